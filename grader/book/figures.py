@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Figure:
-    """An interactive figure that figures.js draws at the end of the section with this anchor."""
+    """An interactive figure that figures.js draws below the text of the section with this anchor."""
 
     name: str
     anchor: str

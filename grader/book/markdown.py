@@ -82,7 +82,7 @@ def _parser() -> MarkdownIt:
     return markdown
 
 
-# --- rules of the renderer: markdown-it calls them with itself as the first argument ------------------------------
+# --- rules of the renderer, which is their first argument ---------------------------------------------------------
 
 
 def _fence(_: RendererHTML, tokens: Sequence[Token], at: int, _options: OptionsDict, _env: EnvType) -> str:
@@ -120,7 +120,7 @@ def _th_close(_: RendererHTML, tokens: Sequence[Token], at: int, _options: Optio
 
 
 def _without_neighbours(tokens: list[Token]) -> list[Token]:
-    """Remove the last line, which links to the previous and the next step, because the page has its own links."""
+    """Remove the links to the neighbouring steps at the end, and the line above them: the page has its own links."""
     if len(tokens) > 3 and tokens[-2].type == "inline" and _NEIGHBOURS.match(tokens[-2].content):
         tokens = tokens[:-3]
         if tokens[-1].type == "hr":
@@ -159,7 +159,7 @@ def _link(tokens: list[Token]) -> None:
 
 
 def _with_figure(tokens: list[Token], figure: Figure) -> list[Token]:
-    """Insert the figure at the end of its section, or at the end of the lesson if the lesson has no such section."""
+    """Insert the figure before the next heading after its anchor, or at the end of the lesson if there is none."""
     begin = next((at for at, token in enumerate(tokens) if token.attrs.get("id") == figure.anchor), len(tokens))
     heads = (at for at, token in enumerate(tokens) if at > begin and token.type == "heading_open")
     end = next(heads, len(tokens))

@@ -33,7 +33,7 @@ class Command(TyperCommand):
     """A command whose help fits every terminal."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # noqa: ANN401 - typer brings its own click
-        """Parse the arguments. Raises UsageError if a step is given as a second argument instead of with --exercise."""
+        """Parse the arguments. Raises UsageError if they are a package and a step, without --exercise."""
         words = list(args)
         if len(words) == 2 and any("--exercise" in param.opts for param in self.params):
             meant = with_exercise(ctx.command_path, words)

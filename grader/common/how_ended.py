@@ -18,7 +18,7 @@ def how_ended(code: int) -> str:
         return f"ended with exit code {code}"
     try:
         name = signal.Signals(-code).name
-    except ValueError:  # a real-time signal has no name
+    except ValueError:  # most real-time signals have no name
         name = f"signal {-code}"
     return f"was killed ({name})"
 

@@ -48,7 +48,8 @@ def interpreter(
 
     `python` is the path of the interpreter. `env` defaults to the caller's environment. With `searches`, Python uses
     PYTHONPATH, which programs that import rclpy need. Without `searches`, the interpreter is isolated (-I). `root` is
-    the folder that contains the module's package, if the package is not installed yet.
+    the folder that contains the module's package, if the package is not installed yet. With `root`, only `-m` is
+    possible, and the interpreter is isolated.
 
     Raises:
         ValueError: the script's path is relative.

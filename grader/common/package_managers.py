@@ -123,7 +123,7 @@ def find_manager(path: str) -> Optional[Manager]:
 
 
 def find_program(name: str, path: str) -> Optional[str]:
-    """Return the path of a system program. Folders such as /sbin are searched in addition to `path`."""
+    """Return the path of a program, or None. Folders such as /sbin are searched in addition to `path`."""
     return shutil.which(name, path=os.pathsep.join([path, *SYSTEM_PATH]))
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _MODES = ("r", "w", "w")
 _LOST = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO})
-"""Errors which mean that the messages cannot be stored: the disk of a log file is full or broken."""
+"""Errors which mean that the messages cannot be stored: the disk is full or broken, or the log file is too large."""
 
 
 class _Messages(io.FileIO):
@@ -34,7 +34,7 @@ class _Messages(io.FileIO):
 
 
 def make_usable() -> None:
-    """Reopen closed standard streams, and allow characters that the encoding of standard output does not have.
+    """Reopen closed standard streams, and allow characters that the encoding of an output stream does not have.
 
     With `grader env >&-`, sys.stdout is None, and the next file that is opened would become the standard output of all
     child processes. If the encoding is not UTF-8, for example with PYTHONIOENCODING=ascii, a question mark is printed

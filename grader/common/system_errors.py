@@ -16,7 +16,7 @@ OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _WRITABLE = "use a folder on another disk, and also set XDG_CACHE_HOME, XDG_STATE_HOME and TMPDIR to such folders"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
-_NOT_ALLOWED = "see the output of `grader doctor`"
+_SEE_DOCTOR = "see the output of `grader doctor`"
 
 _NO_TEMPORARY_FOLDER = (
     "No folder for temporary files is writable: free some space in /tmp, or set another folder with TMPDIR."
@@ -107,4 +107,4 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
     if number == errno.EAGAIN:
         return "This machine cannot start more processes for you: close other programs, or raise `ulimit -u`."
     what = os.strerror(number) if number else "no reason given"
-    return f"The system did not allow something that the grader needs{at} ({what}): {_NOT_ALLOWED}."
+    return f"A system call of the grader failed{at} ({what}): {_SEE_DOCTOR}."

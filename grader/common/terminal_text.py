@@ -17,8 +17,9 @@ _SPACE = "\0"
 """A placeholder for a space at which a line must not be broken: inside a command, and between an option and its
 value."""
 _CONTROL = re.compile(r"(?!\x1b\[(?:0|1|31|33)m)[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
-"""The characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages, and the
-characters that set the direction of the text after them (UAX #9), which could make a line look like another one."""
+"""Matches the characters of Unicode's category Cc, except line feeds, tabs, and the colours of our own messages. Also
+matches the characters that set the direction of the text after them (UAX #9), because they can make a line look like
+another one."""
 
 
 def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:
@@ -33,7 +34,7 @@ def say(text: str, stream: Optional[TextIO] = None, style: str = "") -> None:
 
 
 def without_control(text: str) -> str:
-    r"""Return the text with a question mark in place of each control character except line feeds, tabs and colours.
+    r"""Return the text with a question mark in place of each character that `_CONTROL` matches.
 
     Example:
         >>> without_control("/a\x1b[2K\tb\n")

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 UNSAFE_CATEGORIES = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
-"""Unicode categories that could move the cursor, colour a terminal, reverse the writing direction or hide text."""
+"""Unicode categories of characters that could move the cursor, colour a terminal, reverse the text or hide it."""
 
 
 def printable(text: str) -> str:
@@ -39,7 +39,7 @@ def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | N
 
 
 def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
-    """Return 'a', 'a and b' or 'a, b and c'. If there are more than `most` items, the list ends with '2 more'."""
+    """Return 'a', 'a and b' or 'a, b and c'. If there are N items more than `most`, the list ends with 'N more'."""
     shown = list(items[:most])
     if len(items) > len(shown):
         shown.append(f"{len(items) - len(shown)} more")

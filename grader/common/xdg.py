@@ -49,7 +49,8 @@ def state() -> Path:
 def _folder(variable: str, default: str) -> Path:
     """Return the grader's folder inside the folder that is set in the environment variable.
 
-    As the specification requires, relative paths are ignored.
+    If the variable is not set, return the grader's folder inside `default`, a folder in the home folder. As the
+    specification requires, a relative path counts as not set.
     """
     named = os.environ.get(variable, "")
     folder = Path(named) if named.startswith("/") else home() / default

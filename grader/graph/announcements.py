@@ -31,7 +31,7 @@ _WAIT_S = 1.0
 def passed_on(domain: int) -> Iterator[None]:
     """A context in which the caller creates a participant.
 
-    On exit from the context, the announcement is sent to all other participants.
+    On exit from the context, the announcement is sent to all participants of the domain on this machine.
     """
     held = _held()
     list(_received(held))  # the announcements of earlier participants of this process

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.1
-"""The graph has settled if nothing new arrives for this long (s). If this process could not run for some time, that
-time does not count."""
+"""The graph has settled only if nothing new arrives for this long (s). Time in which this process could not run does
+not count."""
 DEADLINE_S = 4.0
 """The maximum time (s) to wait for participants that have open ports but send nothing, for example because their
 process is stopped. If the response of a node that does not use the grader's profile is lost, the node announces itself
@@ -245,8 +245,8 @@ def _graph(node: Node) -> Counter[object]:
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
     """Return whether all participants on this machine have been discovered, including the names of their nodes.
 
-    Participants on other machines cannot be counted. If the user has set a waiting time, `named_s`, the discovery of
-    other machines is complete only after this time.
+    Participants on other machines cannot be counted. If they can take part, the discovery is complete only after
+    `named_s` (s), the waiting time that the user has set, or after NOTHING_THERE_S if it is None.
     """
     expected = len(participant_ports(node.context.get_domain_id()))
     endpoints: list[Any] = []

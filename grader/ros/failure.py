@@ -27,8 +27,7 @@ def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: It
     """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough.
 
     `nodes` contains the names of the discovered nodes. If all of them are hidden, like the node of this command, the
-    line says that no node was found. In this case, the node that the user named has not been started, or is running in
-    another domain.
+    line says instead that no node was found. Probably, the user has not started a node, or it runs in another domain.
     """
     found = similar(name, candidates)
     hint = f"Did you mean '{printable(found)}'?" if found else ""

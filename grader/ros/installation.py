@@ -207,8 +207,8 @@ def who_hears(env: Mapping[str, str]) -> str:
     if reach == "LOCALHOST" or env.get("ROS_LOCALHOST_ONLY") == "1":
         return f"ROS domain {domain}, reachable only on this machine"
     if reach == "SUBNET":
-        return f"ROS domain {domain}, reachable from the network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST limits it)"
-    note = ", so commands cannot find each other's nodes" if reach == "OFF" else ""
+        return f"ROS domain {domain}, reachable from the network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST stops this)"
+    note = ", so nodes do not find each other" if reach == "OFF" else ""
     return f"ROS domain {domain}, ROS_AUTOMATIC_DISCOVERY_RANGE={reach}{note}"
 
 
@@ -280,7 +280,7 @@ def _wheels(prefix: Path) -> Ros | None:
 
 
 def _of_wheel(prefix: Path) -> str:
-    """Return the version of the wheel that contains rclpy. importlib.metadata would find it, but imports 40 modules."""
+    """Return the version of the wheel of rclpy, or "". importlib.metadata would find it, but imports 40 modules."""
     found = (prefix / PYTHON_LIB).glob("ros_rclpy-*.dist-info")
     return max((each.stem.removeprefix("ros_rclpy-") for each in found), default="")
 

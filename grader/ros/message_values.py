@@ -88,8 +88,8 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     set these fields are appended to the list `stamps`.
 
     Raises:
-        MisfitError: the message has no such field, the value does not match the type of the field, or `values` is not
-        a dictionary.
+        MisfitError: a name in `values` is not a field, a value does not match the type of its field, or `values` is not
+            a dictionary.
         Ros2Error: the type of an array's elements is not installed.
     """
     types = message.get_fields_and_field_types()

@@ -73,6 +73,9 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
 
     bash and zsh set up the ROS 2 environment, with the domain id in `wanted`, after they have read their start-up
     files. Other shells only get the environment `wanted`.
+
+    Raises:
+        MachineError: the shell could not be started.
     """
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}

@@ -146,7 +146,7 @@ def _require_tools(search: str) -> None:
         manager = package_managers.find_manager(search)
         message = (
             f"The turtlesim interfaces must be built once, but this machine lacks {_listed(missing)}. "
-            f"Install what is missing: {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
+            f"Install what is missing with {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
         )
         raise MachineError(message)
 
@@ -164,7 +164,7 @@ def _listed(needs: list[package_managers.Need]) -> str:
 
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
-    """Wait until no other process is building turtlesim, and keep other processes from building in this context.
+    """Hold the lock that a process needs to build turtlesim. If another process holds the lock, wait for it first.
 
     The kernel releases the lock when the process that holds it exits.
     """

@@ -1,1 +1,1 @@
-"""`ros2` for machines without ros2cli."""
+"""The course's own `ros2`, for machines on which no ROS 2 is sourced."""

@@ -42,7 +42,7 @@ def why_not(path: Path, *, most: int | None = MOST_BYTES, piped: bool = False) -
     if kind != stat.S_IFREG:
         return f"it is {_KINDS.get(kind, 'something else')}, not a file"
     if most is not None and about.st_size > most:
-        return f"it has {about.st_size / 1e6:.0f} MB, and at most {most / 1e6:.0f} MB are possible"
+        return f"it has more than {most / 1e6:.0f} MB"
     return ""
 
 

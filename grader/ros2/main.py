@@ -32,7 +32,7 @@ terminates the command."""
 
 
 class _EndedError(KeyboardInterrupt):
-    """The command was interrupted by a signal."""
+    """SIGTERM or SIGHUP interrupted the command. `number` is the number of the signal."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -136,7 +136,7 @@ def _end(number: int, _: FrameType | None) -> None:
 
 
 def _forget_the_terminal() -> None:
-    """Flush standard output. If this fails because the reader of the output has exited, discard the output."""
+    """Ignore Ctrl-C from now on, and flush standard output. If this fails, discard the output."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         sys.stdout.flush()

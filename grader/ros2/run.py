@@ -89,7 +89,7 @@ def _why_none(folder: Path) -> str:
         others = (each for each in sorted(folder.parent.glob("*")) if not each.name.startswith("python"))
         other = next((each.name for each in others if index.executables_in(each)), None)
         if other:
-            return f"none; install_scripts in its setup.cfg names lib/{other} instead of lib/{folder.name}"
+            return f"none in lib/{folder.name}, but in lib/{other}; install_scripts in setup.cfg names this folder"
     return "none; entry_points in setup.py defines those of a Python package"
 
 

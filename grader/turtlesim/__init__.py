@@ -1,1 +1,1 @@
-"""A headless turtlesim: motion and trails in pure Python, and an rclpy node that uses them."""
+"""A headless turtlesim: motion and trails without ROS 2, and an rclpy node that uses them."""

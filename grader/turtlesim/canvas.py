@@ -44,7 +44,7 @@ class Canvas:
         ink = (*pen.color, 255)
         if start != end:
             self._draw.line((start, end), ink, pen.width)
-        # The line of one frame is one or two pixels long. Pillow's short, wide lines leave gaps at their joints. These
+        # The line of one frame is only a few pixels long. Pillow's short, wide lines leave gaps at their joints. These
         # dots fill the gaps.
         self._dot(start, ink, pen.width)
         self._dot(end, ink, pen.width)

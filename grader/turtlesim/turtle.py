@@ -110,7 +110,7 @@ class _Relative(NamedTuple):
 
 
 class Turtle:
-    """One turtle. Requests take effect in the next `update`, but velocity commands take effect immediately."""
+    """One turtle. A command sets the velocities immediately. All movements, also teleports, take place in `update`."""
 
     def __init__(self, start: Start = Start()) -> None:  # noqa: B008 (a tuple cannot be changed)
         self.x, self.y, self.theta = start

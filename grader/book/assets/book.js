@@ -1,4 +1,5 @@
-// The functions of a page of the book that need a script: copy code, search, and open the lists on a wide screen.
+// The functions of a page of the book that need a script: copy code, interactive figures, search, and open the lists on
+// a wide screen.
 // Without the script, the page can still be read.
 
 import { addCopyButtons } from "./copy.js";

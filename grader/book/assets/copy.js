@@ -1,4 +1,5 @@
-// A copy button next to each block of code. For a terminal, the button copies only the commands, not the output.
+// A copy button for each block of code. For a terminal, the button copies only the commands, not the output. A terminal
+// without commands has no button.
 
 const SHOWN_MS = 2000;
 
@@ -9,7 +10,7 @@ export function textOf(block) {
 }
 
 export function addCopyButtons(root) {
-  // Browsers allow the clipboard only for pages of this machine and with https.
+  // Browsers allow the clipboard only for pages from this machine or over https.
   if (!navigator.clipboard) return;
   for (const block of root.querySelectorAll(".code")) {
     if (!textOf(block)) continue;

@@ -1,5 +1,5 @@
-// Figures that the reader changes with sliders. Each figure is a pure function from the values to shapes and a text
-// with the same content.
+// Figures that the reader changes with sliders. The function `draw` of a figure takes the values of the sliders, and
+// returns shapes and a text that describes them.
 
 import { drive, errors, SIDE_M, START, toWorld } from "./motion.js";
 import { element } from "./svg.js";
@@ -43,8 +43,8 @@ export const FIGURES = {
       const side = v * w > 0 ? "left" : "right";
       return {
         shapes,
-        text: `Radius = v / w = ${said(Math.abs(v))} / ${said(Math.abs(w))} = ${said(Math.abs(v / w))} m. `
-          + `One turn takes 2π / w = ${said(2 * Math.PI / Math.abs(w))} s. The circle is on the turtle's ${side}.`
+        text: `Radius = |v / w| = ${said(Math.abs(v))} / ${said(Math.abs(w))} = ${said(Math.abs(v / w))} m. `
+          + `One turn takes 2π / |w| = ${said(2 * Math.PI / Math.abs(w))} s. The circle is on the turtle's ${side}.`
           + `${v < 0 ? " The turtle drives backwards." : ""}${wall}`,
       };
     },

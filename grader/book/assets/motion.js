@@ -10,7 +10,8 @@ export function normalize(angle) {
   return Math.atan2(Math.sin(angle), Math.cos(angle));
 }
 
-// Return the pose one frame later, at v m/s and w rad/s. The turtle first turns and then moves. Walls stop the turtle.
+// Return the pose one frame later, at v m/s and w rad/s. The turtle first turns and then moves. The walls limit x and y.
+// `wall` is true if the turtle hits a wall.
 export function step({ x, y, theta }, v, w) {
   const turned = normalize(theta + w * FRAME_S);
   const wanted = { x: x + Math.cos(turned) * v * FRAME_S, y: y + Math.sin(turned) * v * FRAME_S };

@@ -1,11 +1,12 @@
-// The search. All words must occur in a section. A word in a heading has a higher weight than a word in the text.
+// The search. Each word must occur in the heading or the text of a section. A word in a heading has a higher weight than
+// a word in the text.
 
 const MOST = 8;
 const AROUND = 60;
 
 const words = (text) => text.toLowerCase().split(/\s+/).filter(Boolean);
 
-// Return the sections that contain all words, best match first.
+// Return at most MOST sections that contain all words, best match first.
 export function find(index, query) {
   const wanted = words(query);
   if (wanted.length === 0) return [];
@@ -21,7 +22,8 @@ export function find(index, query) {
   return found.slice(0, MOST).map((each) => each.entry);
 }
 
-// Return the text around one of the words. The text begins and ends with whole words.
+// Return the text around one of the words, or the beginning of the text if it contains none. The result consists of
+// whole words.
 export function excerpt(text, query) {
   const at = Math.max(...words(query).map((word) => text.toLowerCase().indexOf(word)), 0);
   const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
@@ -73,7 +75,7 @@ export function addSearch(box, root) {
   }
 
   input.addEventListener("input", show);
-  // The arrow keys move through the results, and Enter opens the first result.
+  // The arrow keys move through the results, and Enter opens the result that has the focus, or else the first one.
   function move(by) {
     const places = [input, ...found.querySelectorAll("a")];
     places[places.indexOf(document.activeElement) + by]?.focus();

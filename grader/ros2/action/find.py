@@ -22,7 +22,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the actions of the requested type, or their number. The exit code is always 0."""
+    """Print the sorted names of the actions of the requested type, or their number. Return 0 even if there is none."""
     found = look(args).actions
     names = [name for name, types in found if args.action_type in types]
     print(len(names)) if args.count_actions else [print(name) for name in names]

@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     """Send the goal. Return 0 regardless of the goal's result.
 
     Raises:
-        Ros2Error: the type is not installed, or the goal does not match the type.
+        Ros2Error: the type is not installed, or the goal cannot be read or does not match the type.
     """
     from rclpy.action import ActionClient, get_action_names_and_types
 

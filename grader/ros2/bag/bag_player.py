@@ -1,4 +1,4 @@
-"""The node that plays a bag. The node publishes the messages at the same intervals as in the recording."""
+"""The node that plays a bag. The intervals between the messages are those of the recording, divided by the rate."""
 
 from __future__ import annotations
 
@@ -127,7 +127,10 @@ class Player:
         return any_of_them
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Wait until playback gets from `played` to `stamp` (ns), or until the user skips the wait. Return `stamp`."""
+        """Wait until playback gets from `played` to `stamp` (ns), or until the user skips the wait. Return `stamp`.
+
+        A message of a burst does not wait.
+        """
         if self._burst > 0:
             self._burst -= 1
             return stamp

@@ -23,7 +23,7 @@ def offered(publishers: Sequence[Any]) -> list[Qos]:
 
 
 def adapted(publishers: Sequence[Any]) -> QoSProfile:
-    """Return the strictest profile that is compatible with every publisher."""
+    """Return a profile with the strictest reliability and durability that are compatible with every publisher."""
     profiles = [publisher.qos_profile for publisher in publishers]
     return _common(
         [profile.reliability == QoSReliabilityPolicy.RELIABLE for profile in profiles],
@@ -32,7 +32,10 @@ def adapted(publishers: Sequence[Any]) -> QoSProfile:
 
 
 def to_play(recorded: Sequence[Qos]) -> QoSProfile:
-    """Return a profile that is compatible with every subscription that was compatible with all recorded publishers."""
+    """Return a profile for the subscriptions that were compatible with all recorded publishers.
+
+    Its reliability and durability are compatible with each of these subscriptions.
+    """
     return _common(
         [profile.reliability is QosReliability.RELIABLE for profile in recorded],
         [profile.durability is QosDurability.TRANSIENT_LOCAL for profile in recorded],

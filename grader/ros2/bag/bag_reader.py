@@ -34,7 +34,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
         text = f"[ERROR] [ros2bag]: No metadata.yaml in '{path}'."
         if files:
             text += (
-                "\nThe recording is still running or was interrupted. If it was interrupted, type: "
+                "\nThe recording may still be running, or may have been interrupted. If it is not running, type: "
                 f"ros2 bag reindex {shlex.quote(str(path))}"
             )
         raise Ros2Error(text)
@@ -52,7 +52,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
 
 
 def _require_files(path: Path) -> None:
-    """Raise BagError if opening the bag would wait for ever or never end."""
+    """Raise BagError if opening the bag could wait forever or never end, or if metadata.yaml is too large."""
     metadata = path / "metadata.yaml"
     if not path.is_dir():
         _require_file(path, None)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Recorder:
-    """Records a bag, with the options of `bag record`, until a signal ends the recording."""
+    """Records a bag, with the options of `bag record`, until a signal or an error ends the recording."""
 
     def __init__(
         self, node: Node, writer: BagWriter | SplitWriter, args: argparse.Namespace, wanted: Callable[[str, str], bool]

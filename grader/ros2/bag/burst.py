@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="pause after this number of messages; SPACE resumes (default: 0, all messages)",
     )
     add_log_level(parser)
-    # The other options of `bag play`.
+    # Values for the options of `bag play` that `bag burst` does not have.
     parser.set_defaults(
         rate=1.0,
         regex="",
@@ -45,7 +45,8 @@ def run(args: argparse.Namespace) -> int:
     """Publish the messages until the end of the bag or Ctrl-C.
 
     Raises:
-        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.
+        Ros2Error: an option is invalid, the path is not a bag, the bag is damaged, or none of its topics can be
+            published.
     """
     from grader.ros2.bag.play import play
 

@@ -21,7 +21,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_bag(parser)
     parser.add_argument("-t", "--topic-name", action="store_true", help="print only the names of the topics")
-    parser.add_argument("-v", "--verbose", action="store_true", help="print more about services (no effect)")
+    parser.add_argument(
+        "-v", "--verbose", action="store_true", help="ignore -t; a full ROS 2 also prints more about services"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

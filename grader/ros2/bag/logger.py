@@ -1,4 +1,4 @@
-"""Print the messages of `ros2 bag` record, play and reindex to standard error, in the format of rclcpp's logger."""
+"""Print the log messages of `ros2 bag` to standard error, in the format of rclcpp's logger."""
 
 from __future__ import annotations
 

@@ -77,7 +77,8 @@ def run(args: argparse.Namespace) -> int:
     """Play the bag until its end or Ctrl-C.
 
     Raises:
-        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.
+        Ros2Error: an option is invalid, the path is not a bag, the bag is damaged, or none of its topics can be
+            published.
     """
     return play(args)
 
@@ -86,7 +87,8 @@ def play(args: argparse.Namespace, *, burst: float = 0) -> int:
     """Play the bag with these options. The first `burst` messages are published without waiting, even while paused.
 
     Raises:
-        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published.
+        Ros2Error: an option is invalid, the path is not a bag, the bag is damaged, or none of its topics can be
+            published.
     """
     rules = remapping(args.remap)
     from grader.graph.discovery import cli_node

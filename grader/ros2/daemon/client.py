@@ -48,7 +48,7 @@ def start(*, debug: bool = False) -> None:
 
     With `debug`, the daemon logs to this terminal.
     """
-    # Most commands find a daemon.
+    # Most commands do not start a daemon, and so do not need these modules.
     import subprocess
 
     from grader.common.interpreter import interpreter

@@ -18,7 +18,9 @@ _DEEPEST = 20
 
 
 def lines(name: str, *, comments: bool = True, nested_comments: bool = False, depth: int = 0) -> Iterator[str]:
-    """Yield the lines of an interface. Without `comments`, empty lines are omitted, too.
+    """Yield the lines of an interface. Below a field that is a message, yield the lines of its type, indented by a tab.
+
+    Without `comments`, empty lines are omitted, too.
 
     Raises:
         Ros2Error: the interface, or the type of one of its fields, is not installed or cannot be read.

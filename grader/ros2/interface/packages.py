@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the packages, sorted. If several kinds are given, use only the first one."""
+    """Print the packages, sorted. If several kinds are given, use the first of messages, services and actions."""
     kinds = chosen(args)[:1]
     for package in index.interface_packages():
         if not kinds or any(name.split("/")[1] in kinds for name in index.interfaces(package)):

@@ -31,7 +31,7 @@ def add_node(parser: argparse.ArgumentParser, nargs: str | None = None, text: st
 
 
 def lifecycle_nodes(args: argparse.Namespace, *, hidden: bool) -> list[str]:
-    """Return the full names of the lifecycle nodes, sorted."""
+    """Return the full names of the lifecycle nodes, sorted. Hidden nodes are included only if `hidden` is true."""
     graph = look(args)
     names = sorted(set(graph.node_names(all_of_them=hidden)))
     return [name for name in names if _GET_STATE in types_of(graph.services, f"{name}/get_state")]

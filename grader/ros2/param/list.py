@@ -23,7 +23,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--filter", nargs=1, help="print only parameters whose names match this regular expression from the beginning"
     )
     parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
-    parser.add_argument("--param-prefixes", nargs="+", default=[], help="print only parameters with these prefixes")
+    parser.add_argument(
+        "--param-prefixes", nargs="+", default=[], help="print only these parameters: the prefix a selects a and a.b"
+    )
     parser.add_argument("--param-type", action="store_true", help="also print the types")
 
 

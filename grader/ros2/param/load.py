@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def read(file: str, *, use_wildcard: bool) -> list[Any]:
-    """Return the parameters (rcl_interfaces/msg/Parameter) in a file.
+    """Return the parameters (rcl_interfaces/msg/Parameter) in a file. `use_wildcard` includes those under '/**'.
 
     Raises:
         Ros2Error: the file cannot be read, or it is not a parameter file.

@@ -62,7 +62,7 @@ class Parameters:
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Return the sorted names of the parameters.
 
-        If `prefixes` are given, only names that begin with one of these prefixes are returned.
+        If `prefixes` are given, only these names and names that begin with a prefix and a dot are returned.
         """
         answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
         return sorted(answer.result.names)

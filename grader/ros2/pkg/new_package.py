@@ -1,4 +1,4 @@
-"""The properties of the package that `pkg create` creates."""
+"""The package that `pkg create` creates, as data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NewPackage:
-    """The properties of the new package."""
+    """The properties of the new package. `node` and `library` are None if no node or library is to be created."""
 
     name: str
     folder: Path

@@ -43,7 +43,8 @@ def run(args: argparse.Namespace) -> int:
     """Call the service once, or repeatedly until Ctrl-C if --rate is given.
 
     Raises:
-        Ros2Error: the rate or the name is invalid, the type is not installed, or the request does not match the type.
+        Ros2Error: the rate or the name is invalid, the type is not installed, or the request cannot be read or does
+            not match the type.
     """
     from grader.graph.discovery import cli_node, nap, settle, spin_until
 

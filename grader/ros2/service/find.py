@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the services of the requested type, or their number. The exit code is always 0."""
+    """Print the sorted names of the services of the requested type, or their number. Return 0 even if there is none."""
     found = shown(look(args).services, all_of_them=args.include_hidden_services)
     names = [name for name, types in found if args.service_type in types]
     print(len(names)) if args.count_services else [print(name) for name in names]

@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the sorted names of the topics of the requested type, or their number. The exit code is always 0."""
+    """Print the sorted names of the topics of the requested type, or their number. Return 0 even if there is none."""
     found = shown(look(args).topics, all_of_them=args.include_hidden_topics)
     names = [name for name, types in found if args.topic_type in types]
     print(len(names)) if args.count_topics else [print(name) for name in names]

@@ -70,7 +70,7 @@ class Arrivals:
         self._last_ns = now_ns
 
     def have_news(self) -> bool:
-        """Return whether to print the rate: a message has arrived at least one second after it was last printed."""
+        """Return whether to print the rate: a message has arrived one second or more after the last report."""
         if not self._gaps_ns:
             return False
         if self._reported_ns == 0:
@@ -92,7 +92,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         type=positive_int,
         default=WINDOW,
         metavar="WINDOW",
-        help=f"maximum number of messages in a measurement (default: {WINDOW})",
+        help=f"maximum number of intervals in a measurement (default: {WINDOW})",
     )
     parser.add_argument(
         "--filter",

@@ -87,8 +87,8 @@ def run(args: argparse.Namespace) -> int:
     """Publish until Ctrl-C, or until the number of messages that the options specify has been published.
 
     Raises:
-        Ros2Error: the options or the name of the topic are invalid, the type is not installed, a value does not match
-            its field, or the subscriptions do not appear.
+        Ros2Error: the options or the name of the topic are invalid, the type is not installed, the values cannot be
+            read or do not match the type, or the subscriptions do not appear.
     """
     from grader.graph.discovery import cli_node, settle
 

@@ -1,4 +1,4 @@
-"""Subscribe to a topic for `topic echo`, with a QoS that matches every publisher, and report lost messages."""
+"""Subscribe to a topic for `topic echo`, with a QoS that the options or the publishers determine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 
 def chosen_qos(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
-    """Return the QoS that the options specify, or else the strictest QoS that is compatible with every publisher."""
+    """Return the QoS that the options specify.
+
+    If no option other than --qos-profile is given, the reliability and the durability are the strictest that are
+    compatible with every publisher.
+    """
     profile = qos.profile(args)
     publishers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     if qos.is_chosen(args) or not publishers:

@@ -62,13 +62,17 @@ def not_published(requested: str) -> None:
 
 
 def nearest_topic(node: Node, topic: str, text: str = "") -> str:
-    """Return `text`, followed by a line that suggests the most similar topic, if any."""
+    """Return `text`, followed by a line that suggests the most similar topic, or says that no node was found."""
     known = [name for name, _ in node.get_topic_names_and_types() if name != topic]
     return did_you_mean(topic, known, text, node.get_node_names())
 
 
 def wait_for_type(node: Node, topic: str, requested: str) -> Any:  # noqa: ANN401
-    """Wait until the topic has a publisher or a subscription, and return the class of its messages."""
+    """Wait until the topic has a publisher or a subscription, and return the class of its messages.
+
+    Raises:
+        Ros2Error: nodes use different types for the topic, or the type is not installed.
+    """
     import sys
 
     made = type_of(node, topic, requested)

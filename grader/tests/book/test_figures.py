@@ -70,12 +70,12 @@ def test_the_turtle_of_a_figure_moves_like_that_of_the_simulator(page: Page, v: 
 def test_the_sliders_change_the_circle_by_keyboard(page: Page) -> None:
     step(page, "03-circle-publisher")
     figure = page.locator("[data-figure='circle']")
-    figure.get_by_text("Radius = v / w = 2.00 / 1.00 = 2.00 m.").wait_for()
+    figure.get_by_text("Radius = |v / w| = 2.00 / 1.00 = 2.00 m.").wait_for()
     slider = figure.get_by_role("slider", name="linear.x")
     slider.focus()
     for _ in range(5):
         page.keyboard.press("ArrowRight")
-    figure.get_by_text("= 2.50 m. One turn takes 2π / w = 6.28 s.").wait_for()
+    figure.get_by_text("= 2.50 m. One turn takes 2π / |w| = 6.28 s.").wait_for()
     assert slider.get_attribute("aria-valuetext") == "2.5 m/s"
     # A short slider cannot be set precisely, also where the figure is narrow.
     page.set_viewport_size({"width": 700, "height": 900})

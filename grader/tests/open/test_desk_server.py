@@ -34,7 +34,7 @@ class Asked:
         (OSError(errno.ENOSPC, "full", "/state"), 500, "The disk is full for /state"),
         (ValueError("odd"), 500, "Internal error in the grader, not a problem with your work: ValueError: odd."),
         (AssertionError(), 500, "not a problem with your work: AssertionError. Please report the error."),
-        (TimeoutError("odd"), 500, "The system did not allow"),
+        (TimeoutError("odd"), 500, "A system call of the grader failed"),
     ],
 )
 def test_an_error_of_an_action_is_not_reported_as_one_of_the_request(

@@ -61,7 +61,7 @@ def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was
         ({"ROS_LOCALHOST_ONLY": "1"}, "domain 0, reachable only on this machine"),
         ({}, "domain 0, reachable from the network"),
         ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, "domain 0, reachable from the network"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "RANGE=OFF, so commands cannot find each other's nodes"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "RANGE=OFF, so nodes do not find each other"),
     ],
 )
 def test_who_hears_a_node_is_reported(env: dict[str, str], reported: str) -> None:

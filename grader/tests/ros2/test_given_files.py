@@ -99,7 +99,7 @@ def _fill(file: Path) -> None:
         ("metadata.yaml", _piped, "metadata.yaml: it is a named pipe, not a file"),
         ("metadata.yaml", _endless, "metadata.yaml: it is a device, not a file"),
         ("metadata.yaml", _fold, "metadata.yaml: it is a folder, not a file"),
-        ("metadata.yaml", _fill, "metadata.yaml: it has 10 MB, and at most 10 MB are possible"),
+        ("metadata.yaml", _fill, "metadata.yaml: it has more than 10 MB"),
         ("bag.mcap", _piped, "bag.mcap: it is a named pipe, not a file"),
         ("bag.mcap", _endless, "bag.mcap: it is a device, not a file"),
     ],

@@ -43,7 +43,7 @@ def test_executables_in_the_folder_of_another_name_are_found(tmp_path: Path, mon
     with pytest.raises(Ros2Error, match="none; entry_points"):
         run.run(args)
     (installed / "draw_circle").touch(mode=0o755)
-    named = "names lib/robot_controller instead of lib/my_robot_controller"
+    named = "none in lib/my_robot_controller, but in lib/robot_controller"
     with pytest.raises(Ros2Error, match=named):
         run.run(args)
     prefix.rename(tmp_path / "merged")  # here, lib/robot_controller could belong to another package

@@ -22,7 +22,7 @@ reset."""
 
 
 class DrawSquare(Node):
-    """The node draw_square."""
+    """Resets turtlesim, and then responds to each pose of turtle1 with a command."""
 
     def __init__(self) -> None:
         super().__init__("draw_square")

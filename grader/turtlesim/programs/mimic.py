@@ -16,7 +16,7 @@ from grader.turtlesim.programs.spin_node import run
 
 
 class Mimic(Node):
-    """The node turtle_mimic."""
+    """Publishes the velocities in each pose as a command."""
 
     def __init__(self) -> None:
         super().__init__("turtle_mimic")

@@ -78,6 +78,6 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
 
 
 def _in_front(number: int) -> None:
-    """Apply the program's settings to the terminal again, because after Ctrl-Z and fg, it has the shell's settings."""
+    """Apply the program's settings to the terminal again, which has the settings of the shell after Ctrl-Z and fg."""
     if os.tcgetpgrp(number) == os.getpgrp():
         tty.setcbreak(number)

@@ -33,7 +33,7 @@ def first(x: float, y: float, theta: float) -> Leg:
 def follow(leg: Leg, x: float, y: float, theta: float) -> tuple[Leg, float, float]:
     """Return the current leg of a turtle at this pose, and the turtle's linear (m/s) and angular (rad/s) velocity.
 
-    All corners are computed from the first corner, so that small errors do not accumulate.
+    Each corner is computed from the previous corner and not from the pose, so that small errors do not accumulate.
     """
     if leg.turning:
         remaining = math.remainder(leg.theta + math.pi / 2 - theta, math.tau)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _HELP = """\
-The arrow keys drive the turtle, for one second per key press.
+The arrow keys drive and turn the turtle, for one second per key press.
     E R T
     D   G   turn the turtle to the direction from F to the key: G east, R north, D west, V south.
     C V B
@@ -60,7 +60,7 @@ class Teleop(Node):
         self._begun = time.monotonic()
 
     def drive(self, key: Drive) -> None:
-        """Publish one command."""
+        """Publish one command. Print a message if no node subscribes to it."""
         self._see_that(lambda: self._publisher.get_subscription_count() > 0, self._publisher.topic_name)
         twist = Twist()
         twist.linear.x = key.linear * self.get_parameter("scale_linear").value
