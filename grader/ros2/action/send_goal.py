@@ -45,7 +45,8 @@ def run(args: argparse.Namespace) -> int:
     """Send the goal. Return 0 regardless of the goal's result.
 
     Raises:
-        Ros2Error: the type is not installed, or the goal cannot be read or does not match the type.
+        Ros2Error: the name is invalid, the type is not installed, or the goal cannot be read or does not match the
+            type.
     """
     from rclpy.action import ActionClient, get_action_names_and_types
 
@@ -62,7 +63,11 @@ def run(args: argparse.Namespace) -> int:
         raise Ros2Error(message) from error
     name = absolute(args.action_name)
     with cli_node(f"_ros2cli_send_goal_{args.action_type.replace('/', '_')}") as node:
-        client = ActionClient(node, made, name)
+        try:
+            client = ActionClient(node, made, name)
+        except Exception as error:
+            message = f"The action '{args.action_name}' cannot be used: {str(error).partition(', at ')[0]}"
+            raise Ros2Error(message) from error
         try:
             print("Waiting for an action server to become available...", flush=True)
             settle(node, client.server_is_ready)

@@ -38,16 +38,17 @@ def run(args: argparse.Namespace) -> int:
     """Print the events until Ctrl-C.
 
     Raises:
-        Ros2Error: the type of the service cannot be determined.
+        Ros2Error: the name is invalid, or the type of the service cannot be determined or is not installed.
     """
     from rclpy.qos import QoSPresetProfiles
 
     from grader.graph.discovery import cli_node, settle, spin_until
+    from grader.ros2.topic import topic_lookup
 
     form = form_of(args)
     with cli_node() as node:
         name = absolute(args.service_name)
-        topic = f"{name}/_service_event"
+        topic = topic_lookup.expanded(node, f"{name}/_service_event")
         settle(node, lambda: node.count_publishers(topic) > 0)
         made = _class(node, name, args)
 

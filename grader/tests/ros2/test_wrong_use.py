@@ -138,6 +138,8 @@ WITH_TURTLESIM = {
     "ros2 action type /turtle1/rotate": (1, ["Did you mean '/turtle1/rotate_absolute'?"]),
     "ros2 service info /spwn": (1, ["Unknown service '/spwn'", "Did you mean '/spawn'?"]),
     "ros2 service echo /spwn": (1, ["Cannot find type for '/spwn'", "Did you mean '/spawn'?"]),
+    "ros2 service echo '/odd name' std_srvs/srv/Empty": (1, ["topic name '/odd name/_service_event' is invalid"]),
+    "ros2 action send_goal '/odd name' turtlesim/action/RotateAbsolute": (1, ["action '/odd name' cannot be used: "]),
     "ros2 node info turtlesim": (1, ["Unable to find node 'turtlesim'", "Did you mean '/turtlesim'?"]),
     "ros2 topic delay /turtle1/pose": (1, ["msg does not have header"]),
     "ros2 topic echo --once /turtle1/pose --filter m.z": (1, ["The filter 'm.z' failed: AttributeError"]),
