@@ -32,7 +32,7 @@ def loaded(argv: Sequence[str]) -> list[str]:
 
 
 def _loader(program: str) -> str:
-    """Return the path of the dynamic loader of a 64-bit ELF file, or an empty string for any other file."""
+    """Return the path of the dynamic loader that a 64-bit ELF file names, or "" if it names none or is no such file."""
     with open(program, "rb") as file:  # noqa: PTH123 - a resolved path would hide a virtual environment
         header = file.read(_HEADER.size)
         if len(header) < _HEADER.size:

@@ -1,7 +1,7 @@
 """Prepare a process of the grader so that it works with any user settings.
 
-A command of the grader calls `prepare` before it does anything else. Child processes inherit the changes, except for
-the warnings filter.
+Each command of the grader calls `prepare` at its start. Child processes inherit the changes, except for the warnings
+filter.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Standard streams to which a command can always write."""
+"""Make the standard streams usable, even if they are closed or their encoding lacks some characters."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
     """Return the values that a user typed, such as "{linear: {x: 2.0}}". No value means an empty dictionary.
 
     Raises:
-        Ros2Error: the string is not valid YAML, or `dictionary` is true and the value is not a dictionary.
+        Ros2Error: the string cannot be read as YAML, or `dictionary` is true and the value is not a dictionary.
     """
     import yaml
 

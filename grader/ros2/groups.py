@@ -140,7 +140,7 @@ GROUPS = {
             "list": "Output a list of available services",
             "type": "Output a service's type",
         },
-        {"--include-hidden-services": "include hidden services, those with a name that starts with _"},
+        {"--include-hidden-services": "include hidden services: a part of their name starts with _"},
     ),
     "topic": Group(
         "Various topic related sub-commands",
@@ -155,7 +155,7 @@ GROUPS = {
             "pub": "Publish a message to a topic",
             "type": "Print a topic's type",
         },
-        {"--include-hidden-topics": "include hidden topics, those with a name that starts with _"},
+        {"--include-hidden-topics": "include hidden topics: a part of their name starts with _"},
     ),
     "wtf": Group(
         "Use `wtf` as alias to `doctor`",

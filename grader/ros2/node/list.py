@@ -1,4 +1,4 @@
-"""The verb `node list`: print the names of all nodes."""
+"""The verb `node list`: print the names of the nodes."""
 
 from __future__ import annotations
 

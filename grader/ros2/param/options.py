@@ -21,7 +21,7 @@ def add_node(parser: argparse.ArgumentParser) -> None:
 def add_timeout(parser: argparse.ArgumentParser) -> None:
     """Add the option for the maximum time to wait for the node."""
     parser.add_argument(
-        "--timeout", metavar="N", type=int, default=1, help="wait N seconds for the node to appear (default: 1)"
+        "--timeout", metavar="N", type=int, default=1, help="wait at most N seconds for the node (default: 1)"
     )
 
 

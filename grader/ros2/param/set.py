@@ -36,7 +36,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401
     """Convert a YAML string to a ParameterValue.
 
     Raises:
-        Ros2Error: the string is not valid YAML.
+        Ros2Error: the string cannot be read as YAML.
     """
     import yaml
     from rclpy.parameter import get_parameter_value

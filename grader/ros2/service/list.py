@@ -1,4 +1,4 @@
-"""The verb `service list`: print the names of all services."""
+"""The verb `service list`: print the names of the services."""
 
 from __future__ import annotations
 

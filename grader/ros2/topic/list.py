@@ -1,4 +1,4 @@
-"""The verb `topic list`: print the names of all topics."""
+"""The verb `topic list`: print the names of the topics."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ reset."""
 
 
 class DrawSquare(Node):
-    """Resets turtlesim, and then responds to each pose of turtle1 with a command."""
+    """A node that resets turtlesim, and then computes each command from the latest pose of turtle1."""
 
     def __init__(self) -> None:
         super().__init__("draw_square")

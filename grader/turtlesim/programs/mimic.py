@@ -16,7 +16,7 @@ from grader.turtlesim.programs.spin_node import run
 
 
 class Mimic(Node):
-    """Publishes the velocities in each pose as a command."""
+    """A node that publishes a command with the velocities of each pose."""
 
     def __init__(self) -> None:
         super().__init__("turtle_mimic")

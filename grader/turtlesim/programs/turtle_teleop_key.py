@@ -93,8 +93,7 @@ class Teleop(Node):
         if not there:
             domain = os.environ.get("ROS_DOMAIN_ID") or "0"
             self._tell(
-                f"No subscription or action server for {name} was found (ROS_DOMAIN_ID is {domain}). "
-                "Is turtlesim running?"
+                f"No subscription or action server for {name} was found in ROS domain {domain}. Is turtlesim running?"
             )
         return there
 

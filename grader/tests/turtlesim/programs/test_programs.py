@@ -121,7 +121,7 @@ def test_it_says_when_nobody_listens(alone: World) -> None:
     keys = terminal(alone, TELEOP)
     keys.expect("Q quits")
     keys.send(UP)
-    keys.expect(r"No subscription or action server for /turtle1/cmd_vel was found \(ROS_DOMAIN_ID is [0-9]+\)")
+    keys.expect(r"No subscription or action server for /turtle1/cmd_vel was found in ROS domain [0-9]+\.")
     keys.send("q")
     keys.expect(pexpect.EOF)
 
