@@ -149,7 +149,8 @@ def place(path: Path | None, exercise: str | None, workspace: Path | None = None
     """Return the exercise and the folder that contains the learner's work on the exercise.
 
     Raises:
-        UsageError: the exercise cannot be determined, or its folder does not exist.
+        UsageError: the arguments do not determine the exercise, no exercise has that name, or the folder of the step
+            does not exist.
     """
     from grader.learner.exercise_argument import meant
 

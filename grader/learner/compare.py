@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 WIDE = 120
 """The number of columns that a terminal needs to show both files side by side.
 
-On a narrower terminal, a unified diff is shown.
+On a narrower terminal and in a pipe, a unified diff is shown.
 """
 
 OTHER_NUMBERS = "The solution has the numbers of an example student. Keep your own numbers in your files."
@@ -68,7 +68,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
 
 
 def _asked(exercise: Exercise) -> set[str]:
-    """Return the files in which the learner writes code in this step, except files unchanged since an earlier step."""
+    """Return the files with marked regions in this step, except files with the same content in an earlier step."""
     ours = _solution_files(exercise)
     marked = [path for path in ours if syntax_of(path) and MEANT.search(ours[path].decode("utf-8", "ignore"))]
     earlier = [_solution_files(find_exercise(id_)) for id_ in catalogue() if id_ < exercise.id]

@@ -27,7 +27,8 @@ def meant(
     See `guessed` for the arguments. `advice` is the part of the message that says how to name the exercise.
 
     Raises:
-        UsageError: the arguments do not determine the exercise, no exercise has that name, or there is no such folder.
+        UsageError: the arguments do not determine the exercise, no exercise has that name, or the folder of the step
+            does not exist.
     """
     known, place = guessed(path, exercise, folder)
     if known is None and not place.exists():
@@ -87,7 +88,7 @@ def _check_there(step: Exercise, place: Path) -> None:
 def open_package(place: Path, exercise: Exercise | None, *, typed: bool) -> Submission:
     """Open the package in a folder. `typed` is true if the user typed a path.
 
-    If the exercise is known, files that are missing from the package come from the notebook next to it.
+    If the exercise is known, the cells of a notebook also count, as in `open_handed_in`.
 
     Raises:
         UsageError: the folder does not contain exactly one package. If no path was typed, the message also contains the
@@ -111,6 +112,6 @@ def _step(name: str, root: Path) -> tuple[Exercise, Path]:
     exercise = find_exercise(name)
     place = workspace.work_folder(exercise, root)
     if not place.is_dir():
-        message = f"{exercise.id} has not been started in {root}. Start the step with `grader start {exercise.id[:2]}`."
+        message = f"There is no folder {place}. `grader start {exercise.id[:2]}` creates it."
         raise UsageError(message)
     return exercise, place

@@ -90,10 +90,10 @@ def state_file() -> Path:
 
 
 def load(workspace: Path) -> Progress:
-    """Return the progress in a workspace. The progress is empty if no step has been started.
+    """Return the progress in a workspace. For a new workspace, it is empty and has a random student id.
 
     Raises:
-        MachineError: the file is damaged or cannot be read.
+        MachineError: the file is damaged, cannot be read, or was written by another version of the grader.
     """
     data = _read(state_file())["workspaces"].get(str(workspace))
     if data is None:
@@ -115,7 +115,7 @@ def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
         update(root, lambda known: known.at("03-circle-publisher"))
 
     Raises:
-        MachineError: the file is damaged or cannot be written.
+        MachineError: the file cannot be written, or `load` raises this error.
     """
     file = state_file()
     try:

@@ -49,7 +49,8 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     """Return the program to run. The defaults are the current step and the first program of the step.
 
     Raises:
-        UsageError: the step has no node, was not started, or does not run this executable.
+        UsageError: the step does not exist, has no folder in the workspace, has no node, or does not run this
+            executable.
     """
     if step and executable is None and not Path(step).exists():
         _refuse_program_as_step(step)
@@ -64,7 +65,8 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
         hint = f" Did you mean {guess}?" if guess else ""
         message = f"{exercise.id} has no program {name}.{hint} Its programs: {', '.join(names)}."
         raise UsageError(message)
-    folder = place if (place / "package.xml").is_file() else place / exercise.package
+    inside = place / exercise.package
+    folder = inside if (inside / "package.xml").is_file() else place
     return Program(folder.resolve(), exercise.package, name)
 
 
@@ -84,11 +86,14 @@ def executables(exercise: Exercise) -> list[str]:
 
 
 def run(program: Program, *, view: bool) -> int:
-    """Build the package, and run the program with a turtlesim until Ctrl-C. Return the exit code for the user.
+    """Build the package, and run the program with a turtlesim until Ctrl-C or until the program exits.
 
-    If `view` is true, a page shows the turtle. If a turtlesim is already running, the program drives the turtle of that
-    turtlesim. The exit code is 0 if the node runs until Ctrl-C or exits without an error, and 1 otherwise. The output
-    of the node, and of a build that failed, appears on the terminal.
+    If a turtlesim is already running, the program uses it. Otherwise, `run` starts a turtlesim, with a page that shows
+    the turtle if `view` is true. The output of the node, and of a build that failed, appears on the terminal. Return 0
+    if the node runs until Ctrl-C or exits without an error, and 1 otherwise.
+
+    Raises:
+        MachineError: ROS 2 or turtlesim cannot be started.
     """
     from grader.ros import shell
 
@@ -102,10 +107,7 @@ def run(program: Program, *, view: bool) -> int:
             return 1
         script = overlay / "lib" / program.package / program.executable
         if not script.is_file():
-            say(
-                f"\nThe package has no executable {program.executable}. See the list console_scripts in "
-                f"{program.folder / 'setup.py'}."
-            )
+            say(f"\n{no_executable(program)}")
             return 1
         beside = _beside_another(env)
         with nullcontext() if beside else _turtlesim(env, view=view):
@@ -114,8 +116,22 @@ def run(program: Program, *, view: bool) -> int:
             return _until_it_ends(program, script, _with_overlay(env, overlay, program.folder))
 
 
+def no_package(program: Program) -> str:
+    """Return the message for a build in which colcon reported no error but did not build the program's package."""
+    name = f"<name>{program.package}</name>"
+    return f"colcon found no package {program.package} in {program.folder}. The package.xml in it must contain {name}."
+
+
+def no_executable(program: Program) -> str:
+    """Return the message for a package that was built but has no such program in lib/PACKAGE."""
+    return (
+        f"The package has no executable {program.executable} in lib/{program.package}. See the list console_scripts in "
+        f"{program.folder / 'setup.py'}, and the folders in setup.cfg."
+    )
+
+
 def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None:
-    """Build with colcon outside the workspace. Return install/<package>, or None if the build failed."""
+    """Build with colcon outside the workspace. Return install/<package>, or None if the package was not built."""
     bases = ["--build-base", str(place / "build"), "--install-base", str(place / "install")]
     # The user's settings of colcon, such as `symlink-install` in ~/.colcon/defaults.yaml, are for the workspace.
     own = {name: value for name, value in env.items() if not name.startswith("COLCON_")}
@@ -139,7 +155,8 @@ def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None
     if done.returncode == 0 and overlay.is_dir():
         return overlay
     print(done.stdout.rstrip(), file=sys.stderr)
-    say("\nThe package could not be built. See the messages of colcon above.")
+    failed = "The package could not be built. See the messages of colcon above."
+    say(f"\n{failed if done.returncode else no_package(program)}")
     return None
 
 

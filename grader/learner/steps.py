@@ -48,8 +48,10 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
     the first step.
 
     Raises:
-        UsageError: the step does not exist, `student` is empty, or `step` is "next" and the learner has not passed the
-            current step yet or there is no later step.
+        UsageError: the step does not exist, `student` is empty, or a file is in the place of a folder of the step (or
+            the reverse). Also if `step` is "next", and the learner has not passed the current step yet or there is no
+            later step.
+        MachineError: the workspace or the progress cannot be written.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)
@@ -122,7 +124,7 @@ def current(folder: Path | None, *, outline: bool = False) -> tuple[Exercise, Pa
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
     """Store a report in the learner's progress if a step was started and the submission is in the workspace.
 
-    Return a message about the next command to type, or an empty string.
+    Return a message about the learner's progress or the next command, or an empty string.
     """
     root = progress.workspace_of(folder)
     begun = progress.load(root)

@@ -37,7 +37,7 @@ DEBOUNCE_MS = 50
 _STEP_MS = 25
 """The polling interval for new events (ms). With an interval of 10 ms, an idle watch would use 0.7 % of a core."""
 SUSPEND_S = 20.0
-"""After this time (s) without a save, the waiting simulator and launcher are suspended."""
+"""After this time (s) without a save, the waiting simulator is suspended."""
 MOST_FOLDERS = 1000
 """The maximum number of folders of a package that are watched."""
 _LOOK_MS = 500
@@ -91,7 +91,7 @@ class Events:
         self._stop = Event()
         self._saved = Event()
         self.watched: list[str] = []
-        """The watched folders."""
+        """The paths that `folders` returned last, for the folder that is watched now."""
         # All folders share one reader of key presses, because a second reader would take keys from the first reader.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
@@ -99,14 +99,15 @@ class Events:
     def watch(self, folder: Path) -> None:
         """Watch only this folder from now on.
 
-        The first event is a save, even if no file has changed. It is queued as soon as the watcher can notice saves.
+        Once the watcher can notice saves, the event of a save is queued even if no file has changed, because the
+        learner may have saved a file before.
         """
         self._stop.set()
         self._stop = Event()
         Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()
 
     def __iter__(self) -> Iterator[Happened]:
-        """Yield each event as it happens. Several pending saves are yielded as one."""
+        """Yield each event as it happens, until the end of the input. Several pending saves are yielded as one."""
         while (happened := self._queue.get()).kind != "end":
             if happened.kind == "saved":
                 self._saved.clear()
@@ -121,7 +122,7 @@ class Events:
         self._queue.put(Happened("key", key))
 
     def close(self) -> None:
-        """Stop watching."""
+        """Stop watching, and end the iteration over the events."""
         self._stop.set()
         self._queue.put(Happened("end"))
 
@@ -211,6 +212,7 @@ class Watched:
 
         Raises:
             UsageError: the folder does not contain one package, or its files cannot be read.
+            MachineError: the submission cannot be judged, because of the machine.
         """
         try:
             submission = self._open()

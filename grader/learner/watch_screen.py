@@ -65,12 +65,12 @@ class _Screen:
         self._below: list[str] = []
         """The text that was printed below the report."""
         self._asked = False
-        """Whether a key press has printed text since the last report. This text must stay on the screen."""
+        """Whether the keys h or l have printed text since the last report. This text must stay on the screen."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
         """Show reports until the learner quits or starts another step.
 
-        Return the step that the learner has started in the meantime, or None to quit.
+        Return the step that the learner has started, or None if the learner has quit.
 
         On a terminal, each grading clears the screen. `notice` is printed below the first report.
         """

@@ -80,7 +80,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 
     Raises:
         UsageError: a file is in the place of a folder, or a folder is in the place of a file.
-        MachineError: the workspace cannot be written.
+        MachineError: the workspace cannot be read or written, or the starting point of the step is missing.
     """
     source = starting_point(exercise)
     if exercise.package:
@@ -100,7 +100,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     except (FileExistsError, NotADirectoryError) as error:
         raise UsageError(_in_the_way(Path(error.filename))) from error
     except OSError as error:
-        message = f"{error.filename or folder} could not be written: {error.strerror}."
+        message = f"{error.filename or folder} could not be read or written: {error.strerror}."
         raise MachineError(message) from error
     return Started(folder, added, present, kept, lacking, tasks, earlier)
 
@@ -185,7 +185,7 @@ def _package_files(exercise: Exercise, files: Mapping[str, bytes]) -> dict[str, 
 
 
 def lacking_text(path: str, lines: Sequence[str]) -> str:
-    """Return the sentence that tells the learner where to add `lines` in the package file `path`."""
+    """Return the text that tells the learner where to add `lines` in the package file `path`."""
     one = len(lines) == 1
     what, these = ("one more line", "this line") if one else ("more lines", "these lines")
     if all(_ENTRY_POINT.fullmatch(line) for line in lines):

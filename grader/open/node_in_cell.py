@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from grader.colcon.runner import build
 from grader.common.how_ended import program_ended
 from grader.errors import GraderError, UsageError
-from grader.learner.run_node import program_of
+from grader.learner.run_node import no_executable, no_package, program_of
 from grader.open.linked_cell import environment, linked_cell
 from grader.ros import installation, shell, underlay
 from grader.sandbox import bubblewrap
@@ -56,14 +56,11 @@ def run(program: Program) -> int:
     built = build(open_submission(program.folder), ros, in_cell=True, tell=lambda _: None)
     if built.build.exit_code != 0 or built.build.package != program.package:
         print(built.build.log.rstrip())
-        print("\nThe package could not be built. See the messages of colcon above.")
+        failed = "The package could not be built. See the messages of colcon above."
+        print(f"\n{failed if built.build.exit_code else no_package(program)}")
         return 1
     if program.executable not in built.build.executables:
-        message = (
-            f"The package has no executable {program.executable}. See the list console_scripts in "
-            f"{program.folder / 'setup.py'}."
-        )
-        raise UsageError(message)
+        raise UsageError(no_executable(program))
     domain = int(env["ROS_DOMAIN_ID"])
     with linked_cell(ros, domain) as cell:
         _start(cell, program, built, ros, domain)

@@ -42,7 +42,10 @@ def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def moments(recording: Recording) -> list[tuple[float, str]]:
-    """Return the events of a replay as (time in s, text): the first calls, and the start and end of the first goals."""
+    """Return the events of a replay as (time in s, text), sorted by time.
+
+    The events are the first calls, and the start, the cancel request and the end of the first goals.
+    """
     found = [(call.t_s, f"{_caller(call)} calls {shorten(call.service)}") for call in recording.calls[:MOST_ROWS]]
     for goal in recording.goals[:MOST_ROWS]:
         found += _moments_of(goal)

@@ -113,7 +113,10 @@ def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
 
 
 def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> Chart | None:
-    """Draw the time from each command to the next, with the allowed band. Return None if no interval was measured."""
+    """Draw the measured intervals between commands, with the allowed range if the exercise requires an interval.
+
+    Return None if no interval was measured.
+    """
     measured = evidence.command_arrivals
     if not measured.intervals:
         return None
@@ -200,7 +203,7 @@ def _end_s(evidence: Evidence) -> float:
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:
-    """Draw one field of the commands: a line that keeps each value until the next command, and the required value.
+    """Draw one field of the commands: a line that keeps each value until the next command, and any required value.
 
     `where` contains the y coordinate of the chart's top, and the number of bins.
     """

@@ -84,7 +84,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class ClassReports:
-    """The reports below a folder, and the files that may be reports but were left out, each with the reason."""
+    """The reports below a folder, and the files and folders that were left out, each with the reason."""
 
     entries: tuple[Entry, ...]
     left_out: tuple[tuple[str, str], ...]
@@ -118,7 +118,7 @@ def read_class(folder: Path) -> ClassReports:
     """Read every report below the folder, sorted by name.
 
     Raises:
-        UsageError: there is no such folder or no report.
+        UsageError: there is no such folder, or it contains neither reports nor files that were left out.
         MachineError: the machine failed while reading.
     """
     if not folder.is_dir():
@@ -146,7 +146,7 @@ def read_class(folder: Path) -> ClassReports:
 
 
 def _files_in(folder: Path) -> tuple[list[tuple[str, int]], list[_LeftOut]]:
-    """Return the JSON files below the folder, each with its size, and what cannot be searched or opened.
+    """Return the JSON files below the folder, each with its size, and what is left out of the search.
 
     The folders near the top come first. Links to folders are not followed.
     """
@@ -244,7 +244,10 @@ def _report_in(folder: Path, name: str) -> _Found | _LeftOut | None:
 
 
 def _text(file: Path) -> str:
-    """Return the text of a report. Raises OSError or UnicodeError, and UnreadableError for a file that is too large."""
+    """Return the text of a report. Raises OSError or UnicodeError.
+
+    Raises UnreadableError if the file is too large, or is not a regular file.
+    """
     descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(descriptor, "rb") as opened:
         about = os.fstat(descriptor)

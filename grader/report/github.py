@@ -83,7 +83,7 @@ def _text(text: str) -> str:
 def to_annotations(rows: Iterable[tuple[str, Report]], folder: str = "") -> str:
     """Return workflow commands, one per line: errors for failed checks, and warnings for those with the status `error`.
 
-    There are at most MOST_ANNOTATIONS of each kind.
+    There are at most MOST_ANNOTATIONS of each kind. Advice is left out.
 
     `folder` is the path of the package in the repository. GitHub needs this path to show an annotation next to the
     line.

@@ -53,7 +53,7 @@ class GraphDrawing:
 def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
     """Draw the nodes and topics that were in the graph at any time, or as many of them as fit.
 
-    Hidden names, debug topics such as /rosout, and the nodes of tools are left out. Return None if there was no node.
+    Hidden names, debug topics such as /rosout, and the nodes of tools are left out. Return None if no node is left.
     """
     nodes = sorted({node for graph in recording.graphs for node in graph.nodes})
     ends = {end: None for graph in recording.graphs for end in graph.endpoints}

@@ -1,4 +1,4 @@
-"""The content of a page for each trial: the canvas with its player, the charts, the graph and the command table."""
+"""The content of a page for each trial: the canvas with its player, the charts, the graph and the tables."""
 
 from __future__ import annotations
 
@@ -71,9 +71,9 @@ class Run:
 
 
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
-    """Return the trials that ran, in order. If there are several trials, each trial has a title.
+    """Return the trials with a recording, in order. If there are several trials, each trial has a title.
 
-    Every id contains `key`.
+    A trial whose node runs in another trial (`beside`) is left out. Every id contains `key`.
     """
     several = len(evidences) > 1
     drawn = [evidence for evidence in evidences if not evidence.trial.beside]
@@ -126,6 +126,8 @@ def _left_out(recording: Recording) -> list[str]:
 
 def _end(evidence: Evidence) -> str:
     """Describe in one sentence how the node's process exited."""
+    if not evidence.trial.executable:
+        return "The simulator ran without a node."
     end = evidence.recording.end
     # If a signal terminated the process, a shell reports 128 plus the signal's number as the exit code.
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code

@@ -66,7 +66,7 @@ def not_written(file: Path, error: OSError) -> UsageError | MachineError:
     if error.errno == errno.ELOOP and file.is_symlink():
         return UsageError(_link(file))
     if error.errno == errno.ENXIO:
-        return UsageError(f"{file} is a named pipe, from which no program reads. Remove it, or choose another name.")
+        return UsageError(f"{file} is a pipe or a socket that no program reads. Remove it, or choose another name.")
     message = f"{file} cannot be written: {error.strerror or error}."
     return MachineError(message) if of_the_machine(error) else UsageError(message)
 

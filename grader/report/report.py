@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Report:
-    """All outcomes of one submission, and the data needed to grade it again."""
+    """All outcomes of one submission, and how it was graded: the versions, the clock, the seed and the sandbox."""
 
     exercise: str
     exercise_title: str

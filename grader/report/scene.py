@@ -104,6 +104,8 @@ def executables(evidence: Evidence) -> str:
 def _without_recording(evidence: Evidence) -> Scene:
     if evidence.run.bench is not None:
         return Scene(notice="The tests do not need a turtle.")
+    if evidence.run.overwhelmed is not None:
+        return Scene(notice="The trial could not be finished.")
     return _bag_scene(evidence) or Scene(notice="The node was not run.")
 
 
@@ -177,7 +179,7 @@ def finite_points(trajectory: Trajectory) -> list[Point]:
 
 
 def _ticks(trajectory: Trajectory, times: list[float]) -> list[Line]:
-    """Return a short line across the trajectory for each of these times (s)."""
+    """Return a short line across the trajectory for each of these times (s) at which the turtle moves."""
     strokes: list[Line] = []
     if not len(trajectory.t_s):
         return strokes

@@ -21,7 +21,7 @@ REPEATED = 2
 """The number of consecutive errors after which chance is an unlikely explanation."""
 ATTENTION = {
     "unreadable": "the grader could not read the whole submission",
-    "similar-names": "another spelling of its name is the same student id",
+    "similar-names": "its name and another student id differ only in their spelling",
     "several-submissions": "there are several submissions with its name",
 }
 """Maps a diagnosis to the reason why an instructor should check the submission."""

@@ -165,8 +165,7 @@ def _verdict(report: Report) -> Text:
 def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     clock = {"simulated": "Judged in simulated time", "wall": "Judged in wall time"}.get(report.clock, "")
     why = printable(report.clock_why)
-    # Nearly all nodes are judged in simulated time, so the clock is printed only on request or if wall time was used
-    # too.
+    # Nearly all nodes are judged in simulated time only, so this is printed only on request.
     simulated_alone = report.clock == "simulated" and "in wall time: " not in why
     notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:

@@ -78,9 +78,9 @@ def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
 
 
 def replace(path: Path, text: str) -> None:
-    """Write a file of ASCII text in one step: nobody reads half of it, and a set-up that is killed leaves no half.
+    """Replace a file by ASCII text in one step, so that no program reads an incomplete file.
 
-    The old file is not changed, because the installer may have linked it to its cache.
+    The old file itself is not changed, because it may be a hard link to a file in the installer's cache.
     """
     unfinished = path.with_suffix(".new")
     unfinished.write_text(text, "ascii")
@@ -137,12 +137,12 @@ def look(
 ) -> Tuple[Optional[machine.Python], List[Need]]:
     """Return the Python for a new .venv, and the missing programs.
 
-    The Python is None if .venv already exists (`made`), or if no Python is suitable.
+    The Python is None if .venv is still usable (`made`), or if no Python is suitable.
     """
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:
-        # Half of the tests need the sandbox, so it is required here.
+        # Many tests need the sandbox, so it is required here.
         tools = [need._replace(lost="") for need in tools] + machine.missing_of_tests(path)
     if made:
         return None, tools
@@ -184,7 +184,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
         "-m", "venv", *options, str(VENV), python=python.path, env=installers.environment(os.environ)
     )
     try:
-        # Show the output only if the command fails, because the output contains the reason.
+        # Show the output only if the command fails. In that case, the output contains the reason.
         subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
         said = error.output.decode(errors="replace")
@@ -213,7 +213,7 @@ def requested_python(name: str) -> machine.Python:
 
 
 def wait_for(lock: TextIO) -> None:
-    """Wait until no other set-up of this folder is running."""
+    """Wait until no other set-up of this folder is running, and keep others waiting until `lock` is closed."""
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -65,7 +65,7 @@ class Line:
 
 
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
-    """Run the tests, and return their lines. `tell` is called before slow tests.
+    """Run the tests, and return their lines. `tell` is called before the turtlesim interfaces are built.
 
     The tests of turtlesim and of a node are left out if a test that they depend on fails.
     """
@@ -151,7 +151,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
             "set-up",
             observed,
             "advice",
-            "nothing, if the lines below are ok; otherwise source this ROS 2, and type: make demo",
+            "nothing, if the lines below are ok; otherwise type in this terminal: make demo",
         )
 
 
@@ -219,7 +219,7 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
     sourced = machine.sourced_ros(env, bootstrap.VENV)
     if ros.kind == "sourced" and sourced and sourced.python != sys.version_info[:2]:
         wanted = ".".join(map(str, sourced.python))
-        return Line("ROS 2", f"{ros.name}, for Python {wanted}", "broken", "source this ROS 2, and type: make demo")
+        return Line("ROS 2", f"{ros.name}, for Python {wanted}", "broken", "type in this terminal: make demo")
     other = env.get("ROS_DISTRO", DISTRO)
     if other != DISTRO:
         return Line("ROS 2", f"{ros.name}; {other} is sourced, but not used", "advice", "nothing, if this is intended")

@@ -35,7 +35,7 @@ _FIRST = frozenset({"uv", "setuptools"})
 """The packages that pip installs before uv installs the others: uv itself, and setuptools, which uv needs to build
 empy."""
 _OLDEST_NUMPY = (1, 25)
-"""The oldest version of numpy that matplotlib supports. matplotlib draws the images."""
+"""The oldest version of numpy that matplotlib, a dependency of the grader, supports."""
 _NUMPY = Path(__file__).with_name("numpy.txt")
 """The last version of numpy 1, in pip's format. Extensions that were built for an older numpy 1 cannot use numpy 2."""
 _BOOTSTRAPPER, _BOOTSTRAPPED = "ros_wheels_bootstrapper", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
@@ -71,7 +71,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     """Install from the lock file. Return the duration of the download and of the installation (s).
 
     Raises:
-        MachineError: no installer succeeded.
+        MachineError: a package could not be installed.
     """
     text = lock.LOCK_FILE.read_text(encoding="utf-8")
     if sourced:

@@ -1,4 +1,6 @@
-"""The environment of the installers venv, pip and uv: only the settings for the network and the caches are kept.
+"""The environment of the installers venv, pip and uv.
+
+Of the user's settings for these installers, only those for the network, the package indexes and the caches are kept.
 
 Like machine.py, this module runs under any Python from 3.6 on, before anything is installed, so it uses only the syntax
 of Python 3.6.

@@ -2,8 +2,8 @@
 
 The file is in pip's format and has sections. `# part: NAME` starts the list of packages of one part, and
 `# part: NAME NAME` starts a list of packages that several optional parts need. Each set-up installs the packages of its
-parts. `python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because
-the set-up reads the lock file before anything is installed.
+parts. `python -m grader.setup.lock` (`make lock`) writes the file. To read the file, this module uses only the standard
+library, because the set-up reads the file before anything is installed.
 """
 
 from __future__ import annotations

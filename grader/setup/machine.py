@@ -145,7 +145,7 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
 
 
 def closed_folder(path: str) -> Optional[Path]:
-    """Return the topmost parent folder of `path` in which other users cannot run programs, or None."""
+    """Return the topmost folder above `path` that other users cannot enter, or None."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 

@@ -25,8 +25,8 @@ NEEDED_MB = 700
 """The disk space for a learner's .venv (MB), including a reserve."""
 AGAIN = "the same command continues from here, and the downloads are kept"
 NO_NETWORK = (
-    "This machine cannot reach the Python packages ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
-    "from pip's own configuration; " + AGAIN + "."
+    "This machine cannot reach the Python packages ({}). Is it online? HTTPS_PROXY sets a proxy, and pip's "
+    "configuration sets a mirror; " + AGAIN + "."
 )
 _FULL_MB = 50
 """If less disk space than this is free (MB), the disk is considered the reason for any failure."""

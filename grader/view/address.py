@@ -114,7 +114,7 @@ def remembered(kind: str) -> Address | None:
 
 
 def _remember(kind: str, address: Address) -> None:
-    """Store the address for the next view. Do nothing if the home folder is not writable."""
+    """Store the address for the next view. Do nothing if the file cannot be written."""
     file = _file(kind)
     new = file.with_suffix(f".{os.getpid()}")
     with contextlib.suppress(OSError):

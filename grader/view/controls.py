@@ -98,7 +98,7 @@ class Hands:
             self.turn(turtle, typed[0])
 
     def turn(self, turtle: str, key: Key) -> None:
-        """Handle a key that acts once per press, however long it is held."""
+        """Turn to the heading of the key, or cancel the turn. Ignore every other key."""
         topic = self._full(turtle)
         if topic is not None and isinstance(key, Turn | Cancel):
             self._ears.drive(topic, key)

@@ -26,9 +26,8 @@ if TYPE_CHECKING:
 EVERY_FRAMES = 2
 """The number of frames between messages while something is changing, for about 31 messages per second."""
 SENT_EVERY_S = 0.25
-"""The interval between messages while nothing is changing (s). With these messages, a view updates the rates and
-detects whether the simulator is still running.
-"""
+"""The interval between messages while nothing is changing (s). A view needs these messages to update the rates of
+topics and the age of the last command."""
 MOST_LINES = 1500
 """The maximum number of drawn lines in a message. With about 90 bytes per line, the message fits into a socket buffer.
 """
@@ -171,7 +170,7 @@ def _reported(turtle: Turtle) -> tuple[object, ...]:
 
 
 def _picture(canvas: Canvas) -> str:
-    """Return the trail as a PNG image. Pixels that were not drawn are transparent."""
+    """Return the trail as a PNG image in base64. Pixels that were not drawn are transparent."""
     trail = canvas.trail()
     while True:
         file = io.BytesIO()

@@ -124,8 +124,8 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
     """Start a view in this terminal. The simulator's output goes to the view, which shows it."""
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         message = (
-            "--view terminal needs a terminal to draw in and read keys from, but standard input or output is not a "
-            "terminal (but, for example, a pipe or a file)."
+            "--view terminal needs a terminal for drawing and for reading keys, but standard input or standard output "
+            "is not a terminal. It may be a pipe or a file."
         )
         raise UsageError(message)
     name = os.environ.get("TERM", "")

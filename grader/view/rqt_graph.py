@@ -74,9 +74,9 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="rqt_graph",
         description="Show the running nodes with the topics that they publish and subscribe to.",
-        epilog="Without --output and --text, the graph is live in a browser until Ctrl-C. Without a browser, it is "
-        "printed as text, or, over ssh or with --port, served for a browser on another machine. "
-        "Example: rqt_graph --output graph.svg",
+        epilog="Without --output and --text, the graph is live in a browser until Ctrl-C. If no browser is found, the "
+        "graph is printed as text. Over ssh or with --port, the graph is served instead, and you open the page "
+        "yourself. Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="write the graph to a file: graph.svg, graph.png or graph.dot"

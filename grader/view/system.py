@@ -1,7 +1,7 @@
 """The ROS system for a view: the graph, the rates of topics, and the node that sends the user's commands.
 
-The listening node is hidden and has no services, so that it does not change the visible graph. To measure
-the rate of a topic, this node subscribes to the topic, but only while a page shows rates, and only if the simulator
+The listening node is hidden and has no services, so that it does not change the visible graph. To measure the rate of a
+topic, this node subscribes to the topic, but only while a page or a terminal shows rates, and only if the simulator
 does not report the rate.
 """
 
@@ -57,8 +57,8 @@ class System:
 class Ears:
     """A thread that spins `node`. At regular intervals, the thread passes the graph and the rates to `tell`.
 
-    `known` returns the topics whose rates the simulator already reports. `looking` returns whether a page shows the
-    rates.
+    `known` returns the topics whose rates the simulator already reports. `looking` returns whether a page or a terminal
+    shows the rates.
     """
 
     def __init__(

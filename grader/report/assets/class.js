@@ -20,7 +20,7 @@
     var header = headers[column];
     var number = header.dataset.sort === "number";
     var now = header.getAttribute("aria-sort");
-    // The first click sorts in ascending order, the second click in descending order.
+    // A click on a column in ascending order reverses the order. Otherwise, the column is sorted in ascending order.
     var direction = now === "ascending" ? -1 : 1;
     var keyed = rows.map(function (row, index) { return { row: row, key: value(row, column), index: index }; });
     keyed.sort(function (a, b) {

@@ -97,6 +97,27 @@ def test_it_says_what_colcon_says(learner: Learner) -> None:
     assert "The package could not be built. See the messages of colcon above." in printed
 
 
+def test_a_package_with_another_name_is_not_said_to_fail_to_build(learner: Learner) -> None:
+    manifest = learner.home / "ros2_ws/src/my_robot_controller/package.xml"
+    before = manifest.read_text("utf-8")
+    manifest.write_text(before.replace("<name>my_robot_controller</name>", "<name>my_robot</name>"), "utf-8")
+    printed = " ".join(learner.reads("run").split())
+    manifest.write_text(before, "utf-8")
+    assert f"colcon found no package my_robot_controller in {manifest.parent}." in printed
+    assert "could not be built" not in printed
+
+
+def test_a_program_outside_lib_names_both_files_that_can_be_wrong(learner: Learner) -> None:
+    setup = learner.home / "ros2_ws/src/my_robot_controller/setup.cfg"
+    before = setup.read_text("utf-8")
+    setup.write_text("", "utf-8")
+    printed = " ".join(learner.reads("run", "03").split())
+    setup.write_text(before, "utf-8")
+    assert "The package has no executable draw_circle in lib/my_robot_controller." in printed
+    assert "console_scripts" in printed
+    assert "the folders in setup.cfg." in printed
+
+
 @pytest.mark.parametrize("setting", ["symlink-install: true", "merge-install: true", "packages-select: [other]", "["])
 def test_the_users_settings_of_colcon_are_for_the_workspace(learner: Learner, setting: str) -> None:
     folder = Path(learner.env["HOME"], ".colcon")

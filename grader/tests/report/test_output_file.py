@@ -31,7 +31,7 @@ def test_a_file_that_may_not_be_written_is_named_before_any_work(
 def test_a_pipe_of_a_student_is_not_waited_for(tmp_path: Path) -> None:
     file = tmp_path / "report.json"
     os.mkfifo(file)
-    with pytest.raises(UsageError, match=r"report\.json is a named pipe, from which no program reads\."):
+    with pytest.raises(UsageError, match=r"report\.json is a pipe or a socket that no program reads\."):
         output_file.write(file, b"{}")
     reads = os.open(file, os.O_RDONLY | os.O_NONBLOCK)
     output_file.write(file, b"{}")

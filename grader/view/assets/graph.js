@@ -70,7 +70,7 @@ export class Graph {
     this.flow(this.busy ?? new Set());
   }
 
-  // Mark the topics on which messages arrive now.
+  // Mark the arrows of the topics on which messages arrive now. `busy` contains the names of these topics.
   flow(busy) {
     this.busy = busy;
     for (const each of this.place.querySelectorAll(".arrow")) {

@@ -24,7 +24,7 @@ MOST_CHARACTERS = 1_000_000
 and turtle_relay.py accepts 16 MiB."""
 LEVELS = {10: "Debug", 20: "Info", 30: "Warn", 40: "Error", 50: "Fatal"}
 _QOS = QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-"""The QoS of /rosout (rmw_qos_profile_rosout_default in rcl). Publishers keep their messages for 10 s for nodes that
+"""The QoS of /rosout (rcl_qos_profile_rosout_default in rcl). Publishers keep their messages for 10 s for nodes that
 subscribe later."""
 
 Line = dict[str, object]

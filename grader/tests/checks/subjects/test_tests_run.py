@@ -84,7 +84,7 @@ def test_a_forged_report_is_read_as_far_as_it_can_be(report: bytes) -> None:
 def test_a_report_about_tests_does_not_say_that_the_node_was_not_run() -> None:
     evidence = given(BAD, BAD, BAD)
     report = report_of(evidence, judge(evidence), "none", {})
-    assert "The node was not run, so" not in html_page(evidence, report)
+    assert "There is no recording of a run, so" not in html_page(evidence, report)
     assert scene_of(evidence).notice == "The tests do not need a turtle."
     assert report.clock_why == "Your tests were run 3 times."
 
