@@ -40,7 +40,7 @@ def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
         MachineError: a library that the page needs is not installed, the learner's progress cannot be read, or the
             server has exited.
     """
-    see_that_it_can_be_served("`grader watch` works without it")
+    see_that_it_can_be_served("`grader watch` works without a page")
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -67,8 +67,8 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
         graded = watched.grade(
             desk.tell, desk.early, lambda opened: desk.read(opened.digest, lacking(watched.exercise, opened.files))
         )
-        # Store the progress before the verdict is shown, even on a slow disk: the verdict's button for the next step
-        # needs it.
+        # Store the progress before the verdict is shown, even on a slow disk, because the button for the next step
+        # needs the stored progress.
         steps.note(watched.exercise, watched.folder, graded.report, workspace)
         desk.judged(graded.report)
         desk.detailed(verdict_html(graded.evidence, graded.report, watched.folder))

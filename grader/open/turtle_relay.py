@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 LARGEST = 1 << 24
 """The maximum size of a message from the view (bytes). The messages with the whole state are the largest, because they
-contain the whole trails of the turtles."""
+contain the whole trail and the last log messages."""
 
 
 async def relay(page: WebSocket, address: Address) -> None:

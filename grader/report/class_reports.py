@@ -115,7 +115,7 @@ class _LeftOut:
 
 
 def read_class(folder: Path) -> ClassReports:
-    """Read every report below the folder, sorted by name.
+    """Return the reports below the folder, sorted by name, and the files and folders that were left out.
 
     Raises:
         UsageError: there is no such folder, or it contains neither reports nor files that were left out.

@@ -7,7 +7,7 @@ Schema 4. Every key except `change` is always present. Strings are never null un
     exercise      {id, title, sha256 of exercise.toml}
     submission    {name as the user typed it, sha256 of its files}
     grader, ros   their versions
-    clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
+    clock         {used: "simulated" or "wall" ("none" if the first trial has no recording), why: a sentence}
     confined      false if the student's code ran without a sandbox, with resource limits only; null if this is not
                   known, in a report on a recording from an earlier version
     seed          the value of --seed, for random inputs such as the start pose; null without --seed

@@ -1,4 +1,4 @@
-"""The verdict on a submission in one line, the same in every format."""
+"""The verdict on a submission in one line, for every format except the PNG image, which has its own title."""
 
 from __future__ import annotations
 

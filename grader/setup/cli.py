@@ -34,7 +34,10 @@ def doctor() -> None:
 
 Domain = Annotated[
     Optional[int],  # noqa: UP045
-    typer.Option(help="ROS domain, 0 to 101. Default: ROS_DOMAIN_ID, or else a domain of your own."),
+    typer.Option(
+        help="ROS domain, 0 to 101. Default: ROS_DOMAIN_ID. If it is not set: 0 with a sourced ROS 2, else a domain of "
+        "your own."
+    ),
 ]
 
 

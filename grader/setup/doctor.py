@@ -133,7 +133,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
     """Yield a line that says whether .venv matches the current lock file and the sourced ROS 2."""
     stamp = stamp or bootstrap.read_stamp()
     if stamp is None or Path(sys.prefix) != bootstrap.VENV:
-        yield Line("set-up", "not created by `make`; versions may differ from the lock file")
+        yield Line("set-up", "not created or not finished by `make`; versions may differ from the lock file")
         return
     ros = machine.sourced_ros(env, bootstrap.VENV)
     now = ros.prefix if ros else bootstrap.WHEELS

@@ -61,7 +61,7 @@ export class Task {
     this.told = text;
     const parts = [];
     if (here) {
-      parts.push(paragraph("Edit these files in your own editor. Each save is graded:"), this.folder(state.folder),
+      parts.push(paragraph("Edit the files in this folder in your own editor. Each save is graded:"), this.folder(state.folder),
         ...state.lacking.map(lacking));
     } else if (step.state === "new") {
       parts.push(paragraph("You can read the lesson first. Starting the step adds its files to your workspace."),

@@ -93,7 +93,7 @@ def _fields(**_: object) -> list[str]:
 
 
 def _serve(command: str, parts: Sequence[Part], fields: Sequence[str], port: int | None) -> None:
-    """Serve the page until Ctrl-C. If no browser can be opened, print how to open the page."""
+    """Serve the page until Ctrl-C. If no browser was found, print how to open the page."""
     import asyncio
 
     from grader.view import browser
