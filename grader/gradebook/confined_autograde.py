@@ -1,6 +1,7 @@
 """The kernels in which `nbgrader autograde` runs notebooks.
 
-Each kernel runs in a sandbox cell (grader.sandbox), and a relay limits its messages (relay.py).
+Each kernel runs in a sandbox cell (grader.sandbox), and a relay limits its messages (relay.py). On a machine without a
+sandbox, kernels run only with `trust_submissions`.
 
 The cells of a notebook are student code. A sandbox cell has only a loopback network and separate disks, so the relay
 communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the relay.
