@@ -29,7 +29,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "ros-1-package-xml": "package.xml requires catkin, the build tool of ROS 1",
         "build-type": "the build type in package.xml is not ament_python",
         "missing-depend": "package.xml does not declare a package that the node uses or the task needs",
-        "depend-on-class": "package.xml declares a class instead of its package",
+        "depend-on-class": "package.xml declares a class or a module as if it were a package",
         "depend-misspelt": "the name of a required package is misspelt in package.xml",
         "depend-kind": "package.xml declares a package for building or testing only, not for running",
         "depend-commented-out": "a dependency is inside an XML comment in package.xml",
@@ -136,7 +136,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "not-called": "a function is not called: the parentheses after its name are missing",
         "callback-called": "a callback is called instead of passed: it has parentheses after its name",
         "callback-parameters": "a callback, or another function that is called, has too many or too few parameters",
-        "self-parameter": "a method has no self parameter",
+        "self-parameter": "a method has no self parameter, or self is used outside a method",
         "arguments-swapped": "the arguments are in the wrong order",
         "argument-missing": "an argument is missing from a call",
         "too-many-arguments": "a call has too many arguments",
@@ -155,5 +155,4 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "message-arguments": "a message is created with arguments that its class does not accept",
     },
 }
-"""Maps each subject to its diagnosis ids, and each id to its meaning. Subjects are in the order in which a submission
-is graded."""
+"""Maps each subject to its diagnosis ids, and each id to its meaning."""

@@ -25,7 +25,7 @@ OF_FUNCTIONS: dict[str, dict[Diagnosis, str]] = {
         "array-arguments": "np.array is called with two lists",
         "list-for-array": "a program computes with a whole list, as if the list were an array",
         "own-name-read": "the program does not open the path in its first argument",
-        "lstsq-result": "numpy's lstsq is called incorrectly, or its result is used incorrectly",
+        "lstsq-result": "numpy's lstsq or solve is called incorrectly, or its result is used incorrectly",
         "refuses-circle": "a function raises ValueError for the points of a circle",
         "no-error": "a function returns a value instead of raising an exception",
         "other-error": "a function raises the wrong exception, or ends the program instead of raising one",
