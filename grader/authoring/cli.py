@@ -26,7 +26,7 @@ def add_to(app: typer.Typer) -> None:
 
 def release(
     check: Annotated[
-        bool, typer.Option("--check", help="Change nothing, and exit with code 1 if exercises/ is out of date.")
+        bool, typer.Option("--check", help="Change nothing, and exit with code 1 if a file is out of date.")
     ] = False,
     to: Annotated[
         Optional[Path],  # noqa: UP045

@@ -22,7 +22,8 @@ _TARGETS = ("help", "demo", "notebooks", "clean", "python3")
 """The targets of the Makefile that need neither the tests, the solutions nor the other pages."""
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc", "nbgrader_config.py")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
-"""Folders that a wheel puts into the package (hatch_build.py). In a checkout, their files are next to the package."""
+"""Folders that a wheel puts into the package (grader/setup/hatch_build.py). In a checkout, their files are next to the
+package."""
 
 
 def hand_out(to: Path) -> None:

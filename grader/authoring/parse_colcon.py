@@ -1,8 +1,8 @@
 """Parse command lines of colcon with colcon's own parser, without running them.
 
-`python -m grader.authoring.parse_colcon` reads a JSON list of command lines (lists of words after `colcon`) and prints
-a JSON list with one error message each, or an empty string. A separate process is necessary, because colcon changes
-the logging and other settings of the process in which it runs.
+`python -m grader.authoring.parse_colcon` reads a JSON list of command lines (lists of words after `colcon`). It prints
+a JSON list with one string for each command line: an error message, or "" if colcon accepts the command line. A
+separate process is necessary, because colcon changes the logging and other settings of the process in which it runs.
 """
 
 from __future__ import annotations

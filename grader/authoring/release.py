@@ -178,7 +178,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m grader.authoring.release", description="Create exercises/ from solutions/."
     )
-    parser.add_argument("--check", action="store_true", help="change nothing, and fail if exercises/ is out of date")
+    parser.add_argument("--check", action="store_true", help="change nothing, and fail if a file is out of date")
     parser.add_argument("--root", type=Path, help="the folder with solutions/ and exercises/ (default: this course)")
     options = parser.parse_args(arguments)
     root = options.root or course_folder().parent

@@ -1,4 +1,4 @@
-"""The inputs of the calls in a trial without a simulator: points on a circle, and bags with poses on a circle."""
+"""The inputs of the calls in a trial without a simulator: points, and bags with poses on a circle."""
 
 from __future__ import annotations
 

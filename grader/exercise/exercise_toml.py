@@ -238,7 +238,7 @@ def _params(
 def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Param | None:
     """Return the value of a parameter, or None if the value is not allowed.
 
-    For a student's own number, every number that a student can get must be allowed.
+    For a student's own value, every value that a student can get must be allowed.
     """
     if isinstance(value, dict) and "own" in value:
         options = numbers.options.get(value["own"], ()) if numbers is not None and len(value) == 1 else ()

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Param = str | float | int | bool | Own | tuple[Any, ...]
-"""The possible types of a check's parameter. A tuple contains strings or pairs. A pair is the name of a message field
-and its value."""
+"""The possible types of a check's parameter. A tuple contains strings or pairs. A pair is a name, for example of a
+message field, and its value."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,8 @@ SYNTAX = {
     **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
 }
 MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
-"""Matches lines that look like a marker, even with a typo. Otherwise, a typo could release the solution to students."""
+"""Matches lines that look like a marker, such as `# begin-solution`. If such a line is not a marker, it is an error:
+otherwise, a typo could release the solution to students."""
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ class CheckSpec:
 
 @dataclass(frozen=True)
 class Drive:
-    """From `from_s` (s) onwards, the simulator drives the turtle.
+    """From `from_s` (s) onwards, until the next drive begins, the simulator drives the turtle.
 
     Each speed is drawn at random between its two limits.
     """
@@ -140,9 +140,10 @@ class Hint:
 
 @dataclass(frozen=True)
 class Exercise:
-    """The exercise of a step. The package is built once and run in every trial, and the checks judge the recordings.
+    """The exercise of a step. The package is built once for all trials.
 
-    Without a `package`, students submit only answers.toml, and the simulator runs without a node.
+    The checks judge the files, the build and the trials. Without a `package`, students submit only answers.toml, and
+    the simulator runs without a node.
     """
 
     id: str

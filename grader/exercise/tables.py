@@ -32,7 +32,11 @@ def read_toml(data: bytes, name: str) -> dict[str, Any]:
 
 
 class Table:
-    """A table that is being read. Mistakes are added to `problems`. A key that is never read counts as unknown."""
+    """A table that is being read. Mistakes are added to `problems`.
+
+    A key that has not been read when `finish` is called counts as unknown. After a mistake, a method returns the
+    default of the key or, if there is none, an empty value or 0.
+    """
 
     def __init__(self, values: dict[str, Any], place: str, problems: list[str]) -> None:
         self.values = values
@@ -106,7 +110,7 @@ class Table:
         return bool(self._get(key, "true or false", lambda value: isinstance(value, bool), default=False))
 
     def strings(self, key: str) -> tuple[str, ...]:
-        """Return a list of strings. The default is an empty list."""
+        """Return the strings in a list. The default is an empty tuple."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, str) for item in value)
@@ -114,7 +118,7 @@ class Table:
         return tuple(self._get(key, "a list of strings", good, default=[]))
 
     def numbers(self, key: str, most: float) -> tuple[float, ...]:
-        """Return a list of finite numbers from -most to most, which may be empty."""
+        """Return the numbers in a list, which may be empty. The numbers must be finite and from -most to most."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(
@@ -125,7 +129,7 @@ class Table:
         return tuple(float(each) for each in self._get(key, allowed, good, default=None) or ())
 
     def options(self, key: str) -> tuple[Any, ...]:
-        """Return a list of at least two different values: either only strings or only numbers."""
+        """Return the values in a list: at least two different values, either only strings or only numbers."""
 
         def good(value: object) -> bool:
             if not isinstance(value, list) or len(value) != len(set(map(repr, value))) or len(value) < 2:

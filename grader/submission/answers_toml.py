@@ -51,7 +51,7 @@ def read_answers(data: bytes) -> Answers:
     except UnicodeDecodeError:
         return Answers(problem="it is not UTF-8")
     except (ValueError, RecursionError) as error:
-        # TOMLDecodeError has the line only in its text.
+        # Before Python 3.14, TOMLDecodeError has the line only in its text.
         line = re.search(r"\(at line (\d+)", str(error))
         if "array" in str(error) and (opened := _open_list(text)) is not None:
             return Answers(problem=f"the list on line {opened} has no ] at its end", line=opened)

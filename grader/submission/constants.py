@@ -51,8 +51,8 @@ def dotted(node: ast.expr) -> str | None:
 def single_names(tree: ast.AST) -> Names:
     """Map each assigned name or attribute to the expression that is assigned to it.
 
-    The value is None if the name is assigned several times, or by a loop or an operator such as `+=`. Names that are
-    assigned as a tuple are left out.
+    The value is None if the name is assigned several times, by a loop or by an operator such as `+=`, or is annotated
+    without a value. Names that are assigned as a tuple are left out.
     """
     names = Names()
     for node in ast.walk(tree):

@@ -29,7 +29,7 @@ SECTION = "options.extras_require"
 
 
 def extras_of_setup(given: ast.expr, module: Module) -> tuple[str, ...] | None:
-    """Return the packages for tests in this value of `extras_require`, or None if the value is not constant."""
+    """Return the packages for tests in this value of `extras_require`, or None if its keys are unknown."""
     table = written(given, module.names)
     if isinstance(table, ast.Dict):
         keys = (None if key is None else evaluate(key, module.names) for key in table.keys)

@@ -37,7 +37,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
     """Return the path of the file that a cell writes, relative to the notebook's folder.
 
     Raises:
-        UsageError: the name is not valid for such a file, or an exercise without a package has only %%answers.
+        UsageError: the name is not valid for such a file, or the exercise has no package and needs %%answers.
     """
     package = exercise.package
     if magic == "answers":

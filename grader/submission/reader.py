@@ -139,7 +139,7 @@ def _ended(child: int) -> int:
     try:
         return os.waitpid(child, 0)[1]
     except ChildProcessError:
-        return 0  # our parent process ignores SIGCHLD, so the exit status is unknown
+        return 0  # SIGCHLD is ignored, as in our parent process, so the exit status is unknown
 
 
 def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object]) -> NoReturn:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 BY_STRING = frozenset(
     {"getattr", "attrgetter", "methodcaller", "__getattribute__", "__getattr__", "get", "exec", "eval"}
 )
-"""Functions that take the name of a function as a string."""
+"""Functions that take the name of a function, or source code, as a string."""
 
 
 @dataclass(frozen=True)

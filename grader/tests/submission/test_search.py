@@ -99,7 +99,7 @@ def test_no_package_says_what_is_there(tmp_path: Path) -> None:
     make(tmp_path, {"draw_circle.py": "", "notes/a.txt": ""})
     message = refused(tmp_path)
     assert message.startswith("There is no package in ")
-    assert "It contains draw_circle.py, notes/." in message
+    assert "The folder contains draw_circle.py, notes/." in message
 
 
 def test_a_folder_with_too_many_entries_is_not_called_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,7 +127,7 @@ def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
 
 
 def test_inside_of_the_package_the_folder_around_is_proposed(package: Path) -> None:
-    assert refused(package / "pkg").endswith(f"It is inside the package {package.resolve()}: give that folder.")
+    assert refused(package / "pkg").endswith(f"The folder is inside the package {package.resolve()}: give that folder.")
 
 
 @pytest.mark.parametrize("name", ["Package.xml", "package.xml.txt", "SETUP.PY"])
