@@ -1,4 +1,4 @@
-"""Advice: suggestions that make the code better. A student who does not follow them loses no points."""
+"""Advice: suggestions for better code. A student who does not follow them loses no points."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WAITS = frozenset({"sleep"})
 
 
 def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
-    """The submission calls create_timer, and does not use a loop for its periodic work."""
+    """The submission calls create_timer, and has no endless loop that sleeps and also publishes or logs."""
     loop = _sending_loop(evidence)
     if evidence.code.calls("create_timer") and loop is None:
         return passed("The node uses a timer.")
@@ -32,7 +32,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read, or contains no code.")
     cause = "A timer calls a method periodically, with a period that the node chooses."
     if loops(evidence) and not evidence.code.calls("spin_once"):
-        cause = "While a node runs its own loop, it receives no messages. With a timer, rclpy.spin does the waiting."
+        cause = "While a node with one thread loops, it receives no messages. With a timer, rclpy.spin waits instead."
     if evidence.code.calls("create_rate"):
         cause = (
             "A rate from create_rate works only while another thread spins the node. A timer does not need an "
@@ -49,7 +49,7 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _sending_loop(evidence: Evidence) -> Where | None:
-    """Return an endless loop that calls `publish` or `info`, and also `sleep`, or None."""
+    """Return the place of a loop such as `while True` that calls `publish` or `info`, and also `sleep`, or None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:

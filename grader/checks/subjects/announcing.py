@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from grader.evidence.targets import Announcement
 
 LATE_S = 1.05
-"""The maximum time (s) until a message shows a change: slightly more than two periods of the topic."""
+"""The maximum time (s) until a message shows a change: slightly more than two periods of 0.5 s."""
 AT_ONCE_S = 0.1
 """If a turtle appears or disappears within this time (s) after a message, the message may contain its name or not."""
-EMPTY = "At this time, no target was left. Even then, the node must publish a message with an empty string."
+EMPTY = "At this time, there was no target. Even then, the node must publish a message with an empty string."
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
 """The maximum number of messages per period. A node may also publish after each change."""

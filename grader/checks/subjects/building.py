@@ -1,4 +1,4 @@
-"""Checks of the build: colcon built the package, and the install folder contains all required files."""
+"""Checks of the submitted files and of the build: colcon built the package, and installed all required files."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
     """Return a failed finding if the files alone show that no build can succeed, else None."""
     ignored = next((name for name in IGNORE_MARKERS if name in evidence.submission.files), None)
     if ignored is not None:
-        observed = f"colcon ignores the package, because a file {ignored} is next to package.xml."
+        observed = f"colcon ignores the package, because its folder contains a file {ignored}."
         return failed(observed, EXPECTED, Cause("colcon-ignore", IGNORED, Where(ignored)))
     setup = evidence.setup_py
     if setup is None:

@@ -112,7 +112,8 @@ def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
             "result."
         )
         nodes = (node for module in evidence.code.modules for node in module.nodes)
-        if any(isinstance(node, ast.Attribute) and node.attr == "status" for node in nodes):
+        checked = any(isinstance(node, ast.Attribute) and node.attr == "status" for node in nodes)
+        if checked or not evidence.code.calls("get_result_async"):
             text = "Which callback sends this goal? After a call to the service, no callback may send one."
         return failed(observed, expected, Cause("goal-after-cancel", text, evidence.place("get_result_async")))
     return passed("No goal arrived after the call.")

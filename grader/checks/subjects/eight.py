@@ -77,7 +77,7 @@ def lobes_of(trajectory: Trajectory) -> list[Lobe]:
 
 
 def eight(evidence: Evidence, params: Eight) -> Finding:
-    """The turtle drives a figure eight."""
+    """The turtle drives a full circle to one side, then a full circle to the other side, and then stands still."""
     expected = (
         f"The turtle drives a figure eight: a full circle of radius {shown(params.radius_m)} m to one side, then a "
         "full circle to the other side."

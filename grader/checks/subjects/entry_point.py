@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 OTHER_ENDINGS = ("", ".txt", ".py.txt", ".PY", ".python")
-"""The endings that a file name may have if .py was forgotten, or if an editor or a browser has added an ending."""
+"""The endings that the name of a Python file may have by mistake, instead of .py."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value is not callable."""
 
@@ -164,7 +164,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
         return failed(
             f"{module.file} contains no code.", expected, Cause("empty-file", "Did you save the file?", where)
         )
-    observed = f"The entry point {executable} names the function {shorten(name)}, which {module.file} does not have."
+    observed = f"The entry point {executable} names {shorten(name)}, which is not at the top level of {module.file}."
     expected = "The function is at the top level of the file."
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
     at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)

@@ -80,7 +80,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
         observed = f"{lines_told} with the feedback appeared while the turtle turned for {turning_s:.1f} s."
         if len(told) > turning_s / params.period_s:
             text = (
-                "The feedback arrives 62 times per second. Store the number, and log the stored number in the "
+                "The feedback arrives 62.5 times per second. Store the number, and log the stored number in the "
                 "callback of a timer."
             )
             return failed(observed, expected, Cause("every-message", text, where))

@@ -124,7 +124,8 @@ def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Fin
         return failed(f"{name} ended with an error of argparse.", expected, Cause("call-ended", text, where))
     last = called.stderr.strip().splitlines()[-1:]
     how = f"{called.ended or 'no result'}{f': {shorten(last[0], 80)}' if last else ''}"
-    return failed(f"{name} ended the program ({how}).", expected, Cause("call-ended", "", where))
+    ended = "ended the program" if evidence.trial.calls.function else "ended"
+    return failed(f"{name} {ended} ({how}).", expected, Cause("call-ended", "", where))
 
 
 def _other_parameters(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:

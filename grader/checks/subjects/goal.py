@@ -122,13 +122,16 @@ def _on_the_way(evidence: Evidence, params: Goal) -> str:
     """Describe the drive of a turtle that ends nearer to the goal than it started, but not at the goal."""
     trajectory = evidence.trajectory
     if trajectory.wall.any():
-        return "The turtle ran into a wall. Keep the angle a between -pi and pi with atan2(sin(a), cos(a))."
+        return (
+            "The turtle ran into a wall. Bring the error into the range from -pi to pi, with "
+            "atan2(sin(error), cos(error))."
+        )
     turns = [command.angular[2] for command in evidence.commands if command.angular[2]]
     changes = sum(before * after < 0 for before, after in pairwise(turns))
     if changes >= max(SWAYS_LEAST, SWAYS * len(turns)):
         return (
             "The turtle sways: many commands turn it in the opposite direction to the command before. It turns too far "
-            "between two commands, so the factor of the error may be too large."
+            "between two commands, so the gain may be too large."
         )
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     nearest = int(away.argmin())

@@ -70,7 +70,7 @@ def lines_in(evidence: Evidence, params: LogFormat, when: str = "") -> Finding:
 
 
 def _printed(evidence: Evidence, params: LogFormat, expected: str, when: str) -> Finding | None:
-    """Return a failed finding if the node prints the required lines, or if its code calls print but never logs."""
+    """Return a failed finding if the node prints the required lines, or prints lines and never logs, else None."""
     printed = evidence.recording.stdout.text.splitlines()
     pattern = student_log.Format(params.format).pattern()
     right = any(pattern.search(line) for line in printed)
@@ -154,7 +154,7 @@ def unless_other_numbers(finding: Finding, evidence: Evidence, format_: str) -> 
     if finding.status is not Status.FAILED or not others:
         return finding
     observed = (
-        f"The format does not fit {len(others)} of {count(len(right) + len(others), 'log line')} with the right words, "
+        f"The format is wrong in {len(others)} of {count(len(right) + len(others), 'log line')} with the right words, "
         f'for example "{shorten(others[-1], 90)}".'
     )
     return failed(observed, finding.expected, _other_numbers(format_).at(log_place(evidence, others[-1])))

@@ -171,7 +171,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
 
 
 def _assigned_again(evidence: Evidence) -> Where | None:
-    """Return the first line outside __init__ that overwrites the attribute with the logged distance, or None.
+    """Return the first line outside __init__ that overwrites the attribute that is logged as distance, or None.
 
     A line that uses the old value, such as a sum, does not count.
     """
@@ -229,7 +229,7 @@ def _reads(step: ast.BinOp, begin: str) -> bool:
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:
-    """Return the lines in the required format, except lines that were delayed because the machine stalled."""
+    """Return the lines in the required format, except lines that a stall of the machine may have delayed."""
     return [line for line in student_log.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 

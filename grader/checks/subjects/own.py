@@ -26,7 +26,7 @@ EARLY, LATE = 0.8, 1.3
 
 
 def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
-    """The numbers exist, belong to the student named in the file, and were submitted by that student."""
+    """The numbers exist, belong to the student named in the file and, in a class, were submitted by that student."""
     found = read_numbers(evidence)
     if isinstance(found, Finding):
         return found

@@ -141,8 +141,7 @@ def _unanswered(evidence: Evidence, observed: str, expected: str, where: Where |
     if crash is not None:
         return crash_finding(evidence, crash, ended, expected)
     text = (
-        "A node responds only while rclpy.spin is running. Something blocks the node's callbacks, or the node's "
-        "parameter services are turned off."
+        "A node responds only while it is spun, no callback blocks it, and its parameter services are not turned off."
     )
     return failed(f"{observed} {ended}".strip(), expected, Cause("no-response", "" if ended else text, where))
 

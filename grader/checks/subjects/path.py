@@ -160,8 +160,8 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
         return failed(observed, expected, Cause("wall", radius_of_commands(evidence), line_of_values(evidence)))
     fitted = trajectory.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
-        never = trajectory.turned_rad <= TURNED_RAD
-        cause = "The turtle never turns. angular.z is the turning speed." if never else ""
+        hardly = trajectory.turned_rad <= TURNED_RAD
+        cause = "The turtle turns too little or not at all. angular.z is the turning speed." if hardly else ""
         return failed(
             "The turtle drove in a straight line.", expected, Cause("straight-line", cause, line_of_values(evidence))
         )

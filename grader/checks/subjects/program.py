@@ -75,7 +75,7 @@ def prints(evidence: Evidence, params: Printed) -> Finding:
         log = evidence.place("info", "warning", "warn", "error", "debug", "print")
         return failed(f"{name} did not print the line.", expected, Cause("prints-nothing", cause, log))
     if not lines:
-        cause = "print writes a line. The function main of the entry point must reach the line with print."
+        cause = "print writes a line. The function that the entry point names must reach the line with print."
         return failed(f"{name} printed nothing.", expected, Cause("prints-nothing", cause, evidence.code.start))
     found = next((match for match in map(pattern.fullmatch, lines) if match is not None), None)
     where = evidence.place("print")

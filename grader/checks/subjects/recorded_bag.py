@@ -125,9 +125,9 @@ def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
         )
     if max(np.ptp(x), np.ptp(y)) < STILL_M:
         cause = (
-            "Nothing moved the turtle during the recording. Start the recording, then a node that drives the turtle."
+            "The turtle did not drive during the recording. Start the recording, then a node that drives the turtle."
         )
-        return failed("In the bag, the turtle never moves.", expected, Cause("bag-still", cause, where))
+        return failed("In the bag, the turtle stays in one place.", expected, Cause("bag-still", cause, where))
     if _rate_hz(poses) > FASTEST_HZ:
         observed = f"{params.topic} has {_rate_hz(poses):.0f} poses per second in the bag."
         cause = "One turtlesim publishes 62.5 poses per second, so more than one was running. Stop the others."

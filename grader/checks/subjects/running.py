@@ -82,7 +82,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def _other_module(evidence: Evidence) -> Cause | None:
-    """Return the cause if the entry point leads to a module, but a different one has the name of the executable."""
+    """Return the cause if the entry point leads to a module, but another has the name of the executable, else None."""
     executable = evidence.trial.executable
     module = (evidence.entry_point() or "").partition(":")[0]
     folder, _, last = module.rpartition(".")

@@ -97,7 +97,7 @@ def spawns(evidence: Evidence, params: Spawns) -> Finding:
         elif len(there) > len(wanted):
             text = "Count the requests when you send them, because the responses arrive later."
             if len(there) == len(wanted) + 1 and len(set(there)) == len(there):
-                text = "There is one request too many. Compare the limit in the condition, and < with <=."
+                text = "There is one request too many. Check the condition that limits the requests: should <= be <?"
         return failed(observed, expected, Cause("target-count", text, where))
     placed = [call for call, name in zip(calls, names, strict=True) if name]
     return _places(evidence, params, placed, expected) or passed(f"The node spawned {count(len(there), 'turtle')}.")

@@ -95,7 +95,7 @@ def _heading(trajectory: Trajectory, begin: int, end: int) -> float:
 
 
 def square(evidence: Evidence, params: Square) -> Finding:
-    """The turtle drives a square."""
+    """The turtle drives four equal sides with corners of 90 degrees, and stands still where it started."""
     expected = (
         f"The turtle drives four straight sides of {shown(params.side_m)} m, and turns by 90 degrees on the spot after "
         "each side."

@@ -1,4 +1,4 @@
-"""Check of a star: straight sides, between which action goals turn the turtle on the spot."""
+"""Check of a star: straight sides, and turns on the spot by action goals between the sides."""
 
 from __future__ import annotations
 

@@ -158,7 +158,7 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
     if not_numbers:
         return Cause(
             "not-a-number",
-            "NaN or infinity comes from a calculation without a defined result, such as infinity minus infinity.",
+            "NaN or infinity may come from a calculation without a defined result, such as infinity minus infinity.",
         ), not_numbers[0]
     if not any(six):
         return Cause(

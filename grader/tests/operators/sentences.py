@@ -160,7 +160,7 @@ SENTENCES: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r"All (?P<count>\d+) commands were": _all_commands,
     r"drove the circle (?P<word>(?:counter-)?clockwise)": _direction,
     r"The turtle (?:did not move|turned on the spot)": lambda facts, _, __: _went(facts) < 0.06,
-    r"The turtle never turns": lambda facts, _, __: abs(_turned(facts)) < 0.11,
+    r"The turtle turns too little or not at all": lambda facts, _, __: abs(_turned(facts)) < 0.11,
     r"exited on its own|crashed": _ended,
     r"Nothing was built|The node was not run": lambda facts, _, __: facts.evidence.run.recording is None,
 }

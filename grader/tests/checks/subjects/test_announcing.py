@@ -91,7 +91,7 @@ def test_a_node_is_silent_when_no_target_is_left(gone_s: float, diagnosed: str) 
     early = tuple(said(1.0 + 0.5 * number, " ".join(PLACES)) for number in range(7))
     finding = of_announces(given(calls=[catch()], gone=dict.fromkeys(PLACES, gone_s), messages=early))
     assert diagnosis(finding) == diagnosed
-    words = "At this time, no target was left. Even then, the node must publish a message with an empty string."
+    words = "At this time, there was no target. Even then, the node must publish a message with an empty string."
     assert (words in told(finding)) == (diagnosed == "silent-when-empty")
 
 

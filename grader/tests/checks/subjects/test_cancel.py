@@ -110,8 +110,13 @@ def test_a_sentence_about_a_cancelled_goal_is_true(words: str, true: Goal, near:
     assert words not in about(near)
 
 
+def with_lines(lines: str, *goals: Goal) -> Evidence:
+    source = f"{CLIENT}\n{lines}\n"
+    return replace(given(*goals, calls=(stop(3.0),)), submission=submission({NODE_FILE: source}))
+
+
 def after(*goals: Goal) -> str:
-    return told(found(NO_GOAL_AFTER, given(*goals, calls=(stop(3.0),)), service="/stop"))
+    return told(found(NO_GOAL_AFTER, with_lines("handle.get_result_async()", *goals), service="/stop"))
 
 
 @pytest.mark.parametrize(
@@ -176,10 +181,16 @@ def success_of(made: Evidence) -> Finding:
     return found(SAYS_WHETHER_ACTIVE, made, service="/stop")
 
 
-@pytest.mark.parametrize(("line", "told"), [("print(future.result().status)", True), ("print(future.result())", False)])
-def test_a_node_that_looks_at_the_status_is_not_told_to_do_so(line: str, *, told: bool) -> None:
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("handle.get_result_async()\nprint(future.result().status)", True),
+        ("handle.get_result_async()\nprint(future.result())", False),
+        ("print(future.result())", True),  # no callback receives a result
+    ],
+)
+def test_a_node_that_looks_at_the_status_or_gets_no_result_is_not_told_to_look(lines: str, *, told: bool) -> None:
     goals = (goal(1.0, 80.0, 3.1, "canceled", cancel_asked_s=3.0), goal(3.1, 0.0, 5.0))
-    trial = replace(given(*goals, calls=(stop(3.0),)), submission=submission({NODE_FILE: f"{CLIENT}\n{line}\n"}))
-    cause = found(NO_GOAL_AFTER, trial, service="/stop").cause
+    cause = found(NO_GOAL_AFTER, with_lines(lines, *goals), service="/stop").cause
     assert ("Which callback sends this goal? After a call to the service, no callback may send one." in cause) == told
     assert ("Check the status of the result." not in cause) == told

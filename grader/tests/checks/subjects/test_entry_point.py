@@ -111,6 +111,7 @@ def test_anything_that_may_be_called_will_do(text: str) -> None:
 def test_a_function_inside_of_the_class_is_not_found() -> None:
     found = of("entry-point", {NODE_FILE: "class A:\n    def main(self):\n        pass\n"})
     assert found.cause == "main is indented, so it belongs to the class above it. Remove the indentation."
+    assert found.observed == f"The entry point draw_circle names main, which is not at the top level of {NODE_FILE}."
 
 
 @pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])

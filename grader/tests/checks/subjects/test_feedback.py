@@ -117,11 +117,11 @@ def test_a_goal_that_is_too_short_for_a_line_is_told(
 def test_the_number_of_lines_is_told() -> None:
     many = tuple(0.2 + 0.016 * index for index in range(150))
     assert "150 lines with the feedback appeared while the turtle turned for 3.0 s." in about(RIGHT, many)
-    assert "The feedback arrives 62 times per second." in about(RIGHT, many)
+    assert "The feedback arrives 62.5 times per second." in about(RIGHT, many)
     few = about(RIGHT, TIMES[:1])
     assert "1 line with the feedback appeared while the turtle turned for 3.0 s." in few
     assert "Log the number in the callback of the timer while there is a goal." in few
-    assert "The feedback arrives 62 times per second." not in few
+    assert "The feedback arrives 62.5 times per second." not in few
     assert "with the feedback appeared" not in about(RIGHT)
 
 

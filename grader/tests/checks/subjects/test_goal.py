@@ -130,7 +130,7 @@ def test_a_node_that_stops_somewhere_else_has_another_goal() -> None:
 
 def test_a_turtle_at_the_wall_learns_about_angles() -> None:
     finding = goal((10, 0.0, -QUARTER / 3), ahead(6.0), start=Pose(1.0, 1.0, 0.0), stops=False)
-    assert (finding.diagnosis, "atan2(sin(a), cos(a))" in finding.cause) == ("not-there", True)
+    assert (finding.diagnosis, "atan2(sin(error), cos(error))" in finding.cause) == ("not-there", True)
 
 
 def test_a_turtle_that_was_put_there_has_not_driven() -> None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 NEARLY = ("x=1.00", "x=1.5", "x=2.5")
-OTHERS = 'The format does not fit 2 of 3 log lines with the right words, for example "x=2.5".'
+OTHERS = 'The format is wrong in 2 of 3 log lines with the right words, for example "x=2.5".'
 
 
 @pytest.mark.parametrize(

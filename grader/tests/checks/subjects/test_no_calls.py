@@ -169,9 +169,9 @@ SPINNING_LOOP = "\nwhile True:\n    rclpy.spin_once(node)\n"
     ("words", "true", "near"),
     [
         ("The node uses a timer.", NODE, NODE.replace(TIMER, "None")),
-        ("While a node runs its own loop, it receives no messages.", NODE.replace(TIMER, "None") + LOOP, NODE),
+        ("While a node with one thread loops, it receives no messages.", NODE.replace(TIMER, "None") + LOOP, NODE),
         (
-            "While a node runs its own loop, it receives no messages.",
+            "While a node with one thread loops, it receives no messages.",
             NODE.replace(TIMER, "None") + LOOP,
             NODE.replace(TIMER, "None") + SPINNING_LOOP,
         ),

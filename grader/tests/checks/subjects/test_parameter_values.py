@@ -50,7 +50,7 @@ def test_several_values_are_accepted_or_refused_at_once() -> None:
 
 
 ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.2, stop_s=None)
-BLOCKED = "Something blocks the node's callbacks, or the node's parameter services are turned off."
+BLOCKED = "no callback blocks it, and its parameter services are not turned off."
 
 
 def refused(reason: str) -> Call:
@@ -65,7 +65,7 @@ UNSET = was_set(2.0, successful=True)
     [
         ("The node accepted radius = 1.0.", was_set(1.0, successful=True), UNSET),
         ("The node did not respond when radius was set.", UNSET, was_set(1.0, successful=True)),
-        ("A node responds only while rclpy.spin is running. Something blocks", UNSET, refused("no")),
+        ("A node responds only while it is spun, no callback blocks it", UNSET, refused("no")),
         ("The node refused radius = 1.0: no reason.", refused(""), refused("no")),
         ("Setting radius to 1.0 is accepted.", refused("no"), was_set(1.0, successful=True)),
         (

@@ -163,6 +163,12 @@ def test_a_large_circle_is_one_and_a_huge_one_is_straight() -> None:
         assert found.diagnosis == diagnosis
 
 
+@pytest.mark.parametrize(("turns_rad_s", "told"), [(0.0, True), (0.005, True), (0.05, False)])
+def test_a_turtle_that_hardly_turns_is_told_that_it_turns_too_little(turns_rad_s: float, *, told: bool) -> None:
+    found = finding("circle", evidence(recording(every(0.5, 0.6, turns_rad_s), start=Pose(1.0, 1.0, 0.5))))
+    assert ("The turtle turns too little or not at all. angular.z is the turning speed." in found.cause) == told
+
+
 @pytest.mark.parametrize(
     ("linear", "angular", "diagnosis"),
     [

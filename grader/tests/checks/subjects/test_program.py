@@ -71,6 +71,7 @@ BOTH = "messages=43 rate=12.50 x=7.30 y=3.10 radius=0.90"
             LINE.replace("2.00", "9.00"),
         ),
         ("bag_report printed nothing.", "", LINE),
+        ("The function that the entry point names must reach the line with print.", "", LINE),
     ],
 )
 def test_a_sentence_about_a_printed_line_is_true(words: str, true: str, near: str) -> None:
@@ -200,5 +201,7 @@ def test_how_a_program_is_called_and_answers_is_told(called: Called, words: str,
 
 @pytest.mark.parametrize(("stderr", "told"), [("the bag has too few messages: 1.\n", True), ("", False)])
 def test_a_message_of_the_program_is_compared_with_the_bag(stderr: str, *, told: bool) -> None:
-    cause = judged("report", Called("slow", "exit 1", stderr=stderr)).cause
+    finding = judged("report", Called("slow", "exit 1", stderr=stderr))
+    cause = finding.cause
+    assert finding.observed.startswith("bag_report ended (exit 1")
     assert ("The bag contains 21 poses. Does the program find all of them before it ends?" in cause) == told

@@ -70,9 +70,9 @@ CUT = made_bag.poses(drive_s=5.0, begin_s=0.0)
         ("The turtle stopped before the turn was complete.", SHORT, CUT),
         ("The recording began too late, or ended too early.", CUT, SHORT),
         ("The bag shows 1.1 turns on a circle with a radius of 1.10 m.", WHOLE, SHORT),
-        ("In the bag, the turtle never moves.", made_bag.poses(drive_s=0.0), made_bag.commands()),
+        ("In the bag, the turtle stays in one place.", made_bag.poses(drive_s=0.0), made_bag.commands()),
         ("The bag contains fewer than two poses on /turtle1/pose.", made_bag.commands(), made_bag.poses(drive_s=0.0)),
-        ("Nothing moved the turtle during the recording.", made_bag.poses(drive_s=0.0), SHORT),
+        ("The turtle did not drive during the recording.", made_bag.poses(drive_s=0.0), SHORT),
         ("/turtle1/pose has 125 poses per second in the bag.", TWO, WHOLE),
         ("One turtlesim publishes 62.5 poses per second, so more than one was running.", TWO, WHOLE),
         (

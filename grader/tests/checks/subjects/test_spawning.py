@@ -122,7 +122,7 @@ UNANSWERED = spawn(9.9, "target3", 5.0, 5.0, response=None)
             ALL[:2],
         ),
         (
-            "There is one request too many. Compare the limit in the condition, and < with <=.",
+            "There is one request too many. Check the condition that limits the requests: should <= be <?",
             [*ALL, spawn(0.7, "target4", 5.0, 5.0)],
             [*ALL, spawn(0.7, "target1", 5.0, 5.0)],
         ),

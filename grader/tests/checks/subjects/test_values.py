@@ -42,6 +42,11 @@ def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, o
     assert str(found.where) == f"{NODE_FILE}:{line}"
 
 
+@pytest.mark.parametrize(("shape", "told"), [("nan", True), ("infinity", True), ("radius 2.2", False)])
+def test_a_value_that_is_not_a_number_may_come_from_a_calculation(shape: str, *, told: bool) -> None:
+    assert ("NaN or infinity may come from a calculation without a defined result" in values(shape).cause) == told
+
+
 def test_where_nothing_arrives_no_value_is_called_wrong() -> None:
     found = values("no messages")
     assert (found.diagnosis, found.observed) == ("no-commands", "No command arrived.")
