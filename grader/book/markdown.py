@@ -175,9 +175,9 @@ def _sections(tokens: list[Token], title: str) -> Iterator[Section]:
     """Yield a section for the lesson's title and the text before the first heading, then one per h2 and h3."""
     level, heading, anchor = 1, title, ""
     texts: list[str] = []
-    heads = {id(inline) for opening, inline in pairwise(tokens) if opening.type == "heading_open"}
+    heads = {id(inline) for opening, inline in pairwise(tokens) if _begins_section(opening)}
     for token in tokens:
-        if token.type == "heading_open" and token.tag in ("h2", "h3"):
+        if _begins_section(token):
             yield Section(level, heading, anchor, " ".join(texts))
             level, anchor, texts = int(token.tag[1:]), str(token.attrs["id"]), []
         elif id(token) in heads:
@@ -187,6 +187,10 @@ def _sections(tokens: list[Token], title: str) -> Iterator[Section]:
         elif token.type in ("fence", "code_block"):
             texts.append(" ".join(token.content.split()))
     yield Section(level, heading, anchor, " ".join(texts))
+
+
+def _begins_section(token: Token) -> bool:
+    return token.type == "heading_open" and token.tag in ("h2", "h3")
 
 
 def _plain(inline: Token) -> str:

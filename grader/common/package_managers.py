@@ -22,7 +22,7 @@ class Need(NamedTuple):
     what: str
     package: str
     lost: str = ""
-    """What does not work without this program. Empty if the program is required."""
+    """What does not work without this package. Empty if the package is required."""
 
 
 class Manager(NamedTuple):

@@ -31,7 +31,7 @@ def users_environment(
         MachineError: ROS 2 was not found, turtlesim could not be built, or no folder for logs could be created.
     """
     if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
-        message = f"--domain takes a whole number from 0 to {HIGHEST_DOMAIN}, but this one is {domain}."
+        message = f"--domain takes a whole number from 0 to {HIGHEST_DOMAIN}, not {domain}."
         raise UsageError(message)
     ros = underlay.with_turtlesim(installation.find_ros(env), tell)
     return installation.users_environment(ros, env, domain)

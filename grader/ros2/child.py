@@ -1,6 +1,6 @@
 """Run a program for `ros2 run`.
 
-The program uses the same terminal as `ros2 run`, and is terminated if `ros2 run` exits first.
+The program uses the same terminal as `ros2 run`. If `ros2 run` exits first, the program gets SIGTERM.
 """
 
 from __future__ import annotations

@@ -21,7 +21,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the interface as YAML."""
+    """Print the template as YAML, in quotation marks unless --no-quotes is given.
+
+    Raises:
+        Ros2Error: no installed interface has this name.
+    """
     from grader.ros import message_values, rendering
 
     index.interface_file(args.type)

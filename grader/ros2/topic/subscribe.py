@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def chosen_qos(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
     """Return the QoS that the options specify.
 
-    If no option other than --qos-profile is given, the reliability and the durability are the strictest that are
+    If no QoS option other than --qos-profile is given, the reliability and the durability are the strictest that are
     compatible with every publisher.
     """
     profile = qos.profile(args)

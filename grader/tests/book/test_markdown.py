@@ -64,3 +64,8 @@ def test_the_line_with_the_neighbours_is_left_out() -> None:
 def test_sections_have_their_plain_text() -> None:
     made = rendered(f"# T\n\nFirst `code`.\n\n## Next\n\n**Bold**\nline.\n\n{TICKS}\nx = 1\n{TICKS}\n")
     assert [(each.title, each.text) for each in made.sections] == [("T", "First code."), ("Next", "Bold line. x = 1")]
+
+
+def test_a_heading_of_the_fourth_level_belongs_to_the_text_of_its_section() -> None:
+    made = rendered("# T\n\n## Next\n\nFirst.\n\n#### A detail\n\nLast.\n")
+    assert [(each.title, each.text) for each in made.sections] == [("T", ""), ("Next", "First. A detail Last.")]
