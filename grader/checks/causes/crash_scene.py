@@ -113,10 +113,17 @@ def methods(of: ast.ClassDef) -> list[Function]:
 
 
 def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    """Yield the name and the line of each assignment to an attribute of self. Assignments such as += do not count."""
-    raised = {id(node.target) for node in ast.walk(of) if isinstance(node, ast.AugAssign)}
+    """Yield the name and the line of each assignment to an attribute of self.
+
+    Assignments such as += do not count. Neither do annotations without a value, such as `self.speed: float`.
+    """
+    others = {
+        id(node.target)
+        for node in ast.walk(of)
+        if isinstance(node, ast.AugAssign) or (isinstance(node, ast.AnnAssign) and node.value is None)
+    }
     for node in ast.walk(of):
-        if id(node) in raised:
+        if id(node) in others:
             continue
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and dotted(node) == f"self.{node.attr}":
             yield node.attr, node.lineno

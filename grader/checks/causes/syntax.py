@@ -120,6 +120,7 @@ CONFLICT = r"^(<<<<<<<|>>>>>>>)"
 MIDDLE = "======="
 """The line that Git writes between two conflicting versions. In a docstring, the same line can underline a heading."""
 OTHERWISE = "The mistake is often on the previous line: a bracket, a colon or the indentation."
+"""The cause if Python's message is only "invalid syntax", and the line is not the first line of the file."""
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
@@ -158,7 +159,8 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
             return Cause(diagnosis, text).fixed_by(_fix(diagnosis, file, unreadable, data))
-    return _no_comma(file, unreadable, data) or Cause("syntax-error", OTHERWISE)
+    has_previous = unreadable.message == "invalid syntax" and (unreadable.line or 0) > 1
+    return _no_comma(file, unreadable, data) or Cause("syntax-error", OTHERWISE if has_previous else "")
 
 
 def _other_sign(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:

@@ -107,7 +107,7 @@ def why_no_float(field: str, value: ast.expr | None) -> Cause | None:
     if any(name.startswith(("np.", "numpy.")) for name in names):
         return Cause(
             "numpy-for-float",
-            f"The field {field} needs a Python float, not a NumPy number. Convert it with float(...).",
+            f"The field {field} needs a Python float, not a NumPy value. Convert it with float(...).",
         )
     if isinstance(value, ast.Call) and getattr(value.func, "attr", "") == "get_parameter_value":
         text = f"The field {field} is a float, but this is a ParameterValue. The number is in its field double_value."

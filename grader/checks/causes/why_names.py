@@ -86,7 +86,7 @@ def _unknown(scene: CrashScene, name: str) -> Cause:
 
 
 def _of_self(scene: CrashScene, name: str) -> Cause | None:
-    if name == "self" and scene.function is None:
+    if name == "self" and (scene.function is None or scene.own_class is None):
         return Cause(
             "self-parameter", "self exists only inside a method. Move this line into a method, such as __init__."
         )
@@ -154,7 +154,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
         text = f"The file does not import the module {name}."
         return Cause("missing-import", text).fixed_by(_import(scene, f"import {name}"))
     for module, members in MEMBERS.items():
-        if name in members:
+        if name in members and not any(stores(scene, name)):
             if module in _imported(scene):
                 text = f"{name} belongs to the module {module}. Write {module}.{name}."
                 return Cause("module-prefix", text).fixed_by(at(scene.crash.where, name, f"{module}.{name}"))
@@ -263,6 +263,8 @@ def why_unbound(scene: CrashScene) -> Cause:
             text = f"{name} is indented too far: it is inside another method, so it is not a method of the class."
             return Cause("method-in-method", text, scene.at(inner))
         return Cause("name-too-early", f"{name} gets its value on line {local[0]}, after this line.")
+    if local and local[0] < scene.line and not _only_raised(scene, name):
+        return Cause("local-name", f"Line {local[0]} gives {name} a value, but that line has not run in this call.")
     kept = "Store a value in self if later calls need the value."
     if own is None and not outside:
         kept = f"Give {name} a value before this line."

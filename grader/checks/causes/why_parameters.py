@@ -14,7 +14,7 @@ from grader.common.words import shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
-    from grader.checks.causes.crash_scene import CrashScene
+    from grader.checks.causes.crash_scene import CrashScene, Function
 
 PASSED = {
     "create_timer": "A timer calls its callback without arguments.",
@@ -32,6 +32,8 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
     own = scene.functions(function)
     if not own:
         return None
+    if function == "__init__" and (created := _created(scene, names)) is not None:
+        return created
     inside = any(own[0] in methods(each) for each in scene.classes)
     if not inside:
         text = (
@@ -61,6 +63,15 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
     return Cause("callback-parameters", text, scene.at(own[0]))
 
 
+def _created(scene: CrashScene, names: str) -> Cause | None:
+    """Return the cause if the line creates an object of a class in this file, without the arguments `names`."""
+    for own in scene.classes:
+        if any(method.name == "__init__" for method in methods(own)) and scene.calls_on_line(own.name):
+            text = f"An object of {own.name} is created here without a value for {shorten(names)}."
+            return Cause("argument-missing", text)
+    return None
+
+
 def _method_of_class(scene: CrashScene, function: str) -> Cause | None:
     """Return the cause if a method of a class is passed as a callback without an object, else None."""
     for own in scene.classes:
@@ -80,13 +91,18 @@ def too_many(scene: CrashScene, function: str) -> Cause | None:
     first = [each.arg for each in (*own[0].args.posonlyargs, *own[0].args.args)][:1]
     inside = any(own[0] in methods(each) for each in scene.classes)
     place = scene.at(own[0])
-    if inside and first != ["self"]:
+    if inside and first != ["self"] and not _is_static(own[0]):
         fix = at(place, f"{function}(", f"{function}(self{', ' if first else ''}")
         text = f"{function} is a method, so its first parameter must be self."
         return Cause("self-parameter", text, place).fixed_by(fix)
     passed = _passed(scene, function) if not scene.calls_on_line(function) else ""
     text = f"{function} is called with an argument but has no parameter for it. {passed}".rstrip()
     return Cause("callback-parameters", text, place).fixed_by(at(place, "(self)", "(self, _)"))
+
+
+def _is_static(method: Function) -> bool:
+    """Return whether the method is a static method or a class method, so that its first parameter is not self."""
+    return any(dotted(each) in ("staticmethod", "classmethod") for each in method.decorator_list)
 
 
 def _passed(scene: CrashScene, function: str) -> str:

@@ -38,3 +38,25 @@ def test_a_function_outside_a_class_is_not_told_to_use_self() -> None:
     error = "UnboundLocalError: cannot access local variable 'n' where it is not associated with a value"
     given = reported("def count():\n    n += 1  # crashed\n", error).cause
     assert given == "A variable that a function assigns to is local to that function. Give n a value before this line."
+
+
+@pytest.mark.parametrize(("stored", "found"), [("dist = 1.0", False), ("other = 1.0", True)])
+def test_a_name_of_the_file_is_not_called_one_of_math(stored: str, *, found: bool) -> None:
+    source = f"def a():\n    {stored}\n\ndef b():\n    print(dist)  # crashed\n"
+    given = reported(source, NO_NAME.format("dist")).cause
+    assert (given == "The file does not import dist, which is in the module math.") == found
+    assert ("dist is a local variable of a (line 2)." in given) != found
+
+
+@pytest.mark.parametrize(("begin", "found"), [("def main():", True), ("class A:\n  def send():", False)])
+def test_a_function_outside_a_class_has_no_self(begin: str, *, found: bool) -> None:
+    given = reported(f"{begin}\n    self.count = 1  # crashed\n", NO_NAME.format("self")).cause
+    assert given.startswith("self exists only inside a method.") == found
+
+
+@pytest.mark.parametrize(("line", "found"), [("n = 1", True), ("m = 1", False)])
+def test_a_line_that_has_not_run_is_named_for_a_local_variable(line: str, *, found: bool) -> None:
+    error = "UnboundLocalError: cannot access local variable 'n' where it is not associated with a value"
+    source = f"def a(b):\n    if b:\n        {line}\n    print(n)  # crashed\n    n = 2\n"
+    given = reported(source, error).cause
+    assert (given == "Line 3 gives n a value, but that line has not run in this call.") == found

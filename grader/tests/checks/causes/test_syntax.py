@@ -63,6 +63,19 @@ def test_a_file_that_python_cannot_read_is_expected_to_be_valid(source: bytes, *
 
 
 @pytest.mark.parametrize(
+    ("message", "line", "found"),
+    [
+        ("invalid syntax", 2, True),
+        ("invalid syntax", 1, False),
+        ("positional argument follows keyword argument", 2, False),
+    ],
+)
+def test_the_previous_line_is_mentioned_only_if_it_may_be_the_reason(message: str, line: int, *, found: bool) -> None:
+    given = unreadable_finding("a.py", Unreadable(message, line), b"f(\nf(a=1, 2)\n")
+    assert (given.cause == "The mistake is often on the previous line: a bracket, a colon or the indentation.") == found
+
+
+@pytest.mark.parametrize(
     ("line", "between"),
     [
         ("f(String '~/status', 10)", "String and '~/status'"),
@@ -73,7 +86,7 @@ def test_a_file_that_python_cannot_read_is_expected_to_be_valid(source: bytes, *
     ],
 )
 def test_a_missing_comma_is_named_if_python_can_read_the_line_with_it(line: str, between: str | None) -> None:
-    found = unreadable_finding("a.py", Unreadable("invalid syntax", 1), f"{line}\n".encode())
+    found = unreadable_finding("a.py", Unreadable("invalid syntax", 2), f"y = 0\n{line}\n".encode())
     assert found.diagnosis == ("syntax-error" if between is None else "comma-missing")
     assert ("A comma is missing between" in found.cause) == (between is not None)
     assert ("The mistake is often on the previous line" in found.cause) == (between is None)

@@ -37,3 +37,11 @@ def test_only_a_method_inside_a_method_is_called_indented_too_far(outer: str, *,
     source = f"class Driver(Node):\n    {outer}\n{inner}\nDriver()()  # crashed\n"
     given = reported(source, "TypeError: 'Driver' object is not callable")
     assert given.diagnosis == ("method-in-method" if found else "not-callable")
+
+
+@pytest.mark.parametrize(("line", "found"), [("self.speed: float = 1.0", True), ("self.speed: float", False)])
+def test_an_annotation_alone_assigns_nothing(line: str, *, found: bool) -> None:
+    source = f"class Driver(Node):\n    def send(self):\n        {line}\n\n    def stop(self):\n"
+    source += "        self.speed()  # crashed\n"
+    given = reported(source, "AttributeError: 'Driver' object has no attribute 'speed'")
+    assert ("self.speed is assigned on line 3, which has not run yet." in given.cause) == found

@@ -38,3 +38,20 @@ def test_each_caller_passes_something_else(line: str, words: str) -> None:
     said = {other: reported(SOURCE.format(line=other), ERROR).cause for other in LINES}
     assert said[line] == f"changed is called with an argument but has no parameter for it. {words}"
     assert not any(words in said[other] for other in LINES if other != line)
+
+
+@pytest.mark.parametrize(("decorator", "found"), [("", True), ("@staticmethod", False), ("@classmethod", False)])
+def test_a_static_method_needs_no_self(decorator: str, *, found: bool) -> None:
+    source = f"class Driver(Node):\n    {decorator}\n    def send():\n        pass\n\nnode.spin()  # crashed\n"
+    given = reported(source, "TypeError: Driver.send() takes 0 positional arguments but 1 was given")
+    assert (given.cause == "send is a method, so its first parameter must be self.") == found
+
+
+@pytest.mark.parametrize(("line", "found"), [("node = Driver()", True), ("node = make()", False)])
+def test_an_object_without_its_arguments_is_reported_where_it_is_created(line: str, *, found: bool) -> None:
+    source = (
+        f"class Driver(Node):\n    def __init__(self, name):\n        super().__init__(name)\n\n{line}  # crashed\n"
+    )
+    given = reported(source, "TypeError: Driver.__init__() missing 1 required positional argument: 'name'")
+    assert given.diagnosis == ("argument-missing" if found else "callback-parameters")
+    assert (given.cause == "An object of Driver is created here without a value for 'name'.") == found
