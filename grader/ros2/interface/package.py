@@ -20,7 +20,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the interfaces, sorted. Print nothing for a package without interfaces."""
+    """Print the interfaces, sorted. Print nothing for a package without interfaces.
+
+    Raises:
+        Ros2Error: the package is not installed.
+    """
     kinds = chosen(args) or index.KINDS
     for name in index.interfaces(args.package_name):
         if name.split("/")[1] in kinds:

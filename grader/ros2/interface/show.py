@@ -46,7 +46,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the definition."""
+    """Print the definition.
+
+    Raises:
+        Ros2Error: the interface, or the type of one of its fields, is not installed or cannot be read.
+    """
     for line in definition.lines(args.type, comments=not args.no_comments, nested_comments=args.all_comments):
         print(line)
     return 0

@@ -18,7 +18,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Delete the parameter. Return 0 even if the node refuses to delete the parameter."""
+    """Delete the parameter. Return 0 even if the node refuses to delete the parameter.
+
+    Raises:
+        Ros2Error: the node does not exist or does not respond.
+    """
     from grader.ros2.param.parameter_client import not_set, parameters_of
     from grader.ros2.param.set import report
 

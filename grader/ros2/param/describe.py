@@ -20,7 +20,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the descriptions. The exit code is 0 even if one of the parameters is not declared."""
+    """Print the descriptions. The exit code is 0 even if one of the parameters is not declared.
+
+    Raises:
+        Ros2Error: the node does not exist or does not respond.
+    """
     from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:

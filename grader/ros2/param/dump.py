@@ -17,7 +17,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the parameter file, with an empty line at the end."""
+    """Print the parameter file, with an empty line at the end.
+
+    Raises:
+        Ros2Error: the node does not exist or does not respond.
+    """
     from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:

@@ -97,7 +97,7 @@ def parameters_of(args: argparse.Namespace) -> Iterator[Parameters]:
     """Create a node, and yield the parameters of the node `args.node_name`.
 
     Raises:
-        Ros2Error: the node does not exist.
+        Ros2Error: the node does not appear within `args.timeout` (s) after the discovery.
     """
     with cli_node(use_sim_time=getattr(args, "use_sim_time", False)) as node:
         yield Parameters(node, _found(node, args))

@@ -21,7 +21,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Set the parameter. Return 0 even if the node rejects the value."""
+    """Set the parameter. Return 0 even if the node rejects the value.
+
+    Raises:
+        Ros2Error: the node does not exist or does not respond, or the value cannot be read as YAML.
+    """
     from rcl_interfaces.msg import Parameter
 
     from grader.ros2.param.parameter_client import parameters_of

@@ -19,7 +19,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the executables, sorted by package and path."""
+    """Print the executables, sorted by package and path.
+
+    Raises:
+        Ros2Error: the package is not installed.
+    """
     if args.package_name:
         unsourced.find(args.package_name, f"Package '{args.package_name}' not found")
     for package in [args.package_name] if args.package_name else index.packages():

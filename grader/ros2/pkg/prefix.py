@@ -19,7 +19,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the prefix."""
+    """Print the prefix.
+
+    Raises:
+        Ros2Error: the package is not installed.
+    """
     unsourced.find(args.package_name, "Package not found")
     prefix = index.prefix_of(args.package_name, "Package not found")
     print(prefix / "share" / args.package_name if args.share else prefix)

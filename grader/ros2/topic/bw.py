@@ -70,7 +70,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the bandwidth every second until Ctrl-C, beginning with the second message."""
+    """Print the bandwidth every second until Ctrl-C, beginning with the second message.
+
+    Raises:
+        Ros2Error: the name of the topic is invalid, or its type cannot be determined.
+    """
     import rclpy
     from rclpy.qos import qos_profile_sensor_data
 

@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the delay every second until Ctrl-C.
 
     Raises:
-        Ros2Error: the messages have no header.
+        Ros2Error: the name of the topic is invalid, its type cannot be determined, or the messages have no header.
     """
     import rclpy
     from rclpy.qos import qos_profile_sensor_data

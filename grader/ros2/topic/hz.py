@@ -105,7 +105,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the rate once per second until Ctrl-C, except when no messages arrive."""
+    """Print the rate once per second until Ctrl-C, except when no messages arrive.
+
+    Raises:
+        Ros2Error: the name of the topic or the filter is invalid, or the type of the topic cannot be determined.
+    """
     import rclpy
     from rclpy.clock import Clock
     from rclpy.clock_type import ClockType
