@@ -81,7 +81,10 @@ def _refuse_program_as_step(name: str) -> None:
 
 
 def executables(exercise: Exercise) -> list[str]:
-    """Return the names of the executables that the trials run as nodes, without duplicates."""
+    """Return the names of the executables of the exercise's nodes, without duplicates.
+
+    A program that a trial calls, such as `bag_report` in step 11, is not a node.
+    """
     return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable and not trial.calls))
 
 

@@ -152,7 +152,7 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
 
 def _following(known: progress.Progress) -> str:
     """Return the line about what is left to do: the current step, the next step, or steps that were left out."""
-    if known.current is not None and not known.step(known.current).passed:
+    if known.current in catalogue() and not known.step(known.current).passed:
         return f"Your current step, {known.current}, has not passed yet."
     return "The next step: grader start next" if _waiting(known) else _open_steps(known)
 
@@ -243,9 +243,12 @@ def _after(name: str) -> str:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the later steps that the learner has not passed yet, or all later steps if all are passed."""
+    """Return the later steps that the learner has not passed yet, or all later steps if all are passed.
+
+    If the course does not contain the current step, the later steps are all steps.
+    """
     names = list(catalogue())
-    later = names[names.index(known.current or names[0]) + 1 :]
+    later = names[names.index(known.current) + 1 :] if known.current in names else names
     return [name for name in later if not known.step(name).passed] or later
 
 

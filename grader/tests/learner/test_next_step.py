@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 from typing import TYPE_CHECKING
 
 import pytest
+from rich.console import Console
 
 from grader.checks.exercises import find_exercise
 from grader.errors import MachineError, UsageError
@@ -43,6 +45,17 @@ def test_a_step_that_has_not_passed_can_be_skipped_for_another_one(current: str,
     steps.start(current, None)
     with pytest.raises(UsageError, match=f"To skip this step for now, .*`grader start {another}`"):
         steps.start("next", None)
+
+
+def test_a_current_step_that_the_course_no_longer_has_does_not_stop_the_learner() -> None:
+    own = steps.start(FIRST, None).started.folder
+    progress.update(
+        progress.workspace_of(None), lambda before: before.graded("00-gone", report("passed")).at("00-gone")
+    )
+    assert "The next step: grader start next" in steps.note(find_exercise(FIRST), own, report("passed"))
+    said = Console(width=100, record=True, file=io.StringIO())
+    steps.print_status(None, said)
+    assert "Continue with: grader start next" in said.export_text()
 
 
 def test_a_progress_file_that_cannot_be_read_is_named_once() -> None:
