@@ -112,7 +112,7 @@ def _made(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> list
             "points": 0,
             "needs": [need.format(**words) for need in template.get("needs", [])],
         }
-        # The package's checks do not belong to a particular trial.
+        # Without the key, a check is in the first trial.
         more = {"trial": spec["id"]} if prefix else {}
         made.append({**check, **more, **table.get(name, {})})
     return made

@@ -34,10 +34,10 @@ class Submission:
     `package_dir` is the folder of the package, and `files` maps POSIX paths relative to that folder to the contents of
     the files.
 
-    `files` leaves out build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a
-    regular file in the folder. `rejected` lists the files that make the submission invalid, each with the reason, for
-    example a symlink that points outside the package. A link to another file in the package has the content of that
-    file. Every path in `files` is printable.
+    `files` leaves out build/, install/ and log/ (unless they are Python packages), hidden folders, virtual environments
+    and caches. A link to another file in the package has the content of that file. `rejected` lists everything that
+    makes the submission invalid, each with the reason, for example a device or a symlink that points outside the
+    package. Every path in `files` is printable.
     """
 
     name: str

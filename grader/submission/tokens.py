@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 def tokens(data: bytes) -> Iterator[tokenize.TokenInfo]:
     """Yield the tokens of the file, up to the place at which Python's tokenizer fails.
 
-    It fails at unfinished strings and brackets, at wrong indentation, and at bytes that are not in the file's encoding.
+    It may fail at unfinished strings and brackets, at wrong indentation, and at bytes that are not in the encoding of
+    the file.
     """
     with suppress(tokenize.TokenError, SyntaxError, UnicodeDecodeError):
         yield from tokenize.tokenize(io.BytesIO(data).readline)

@@ -147,8 +147,10 @@ def _not_there(evidence: Evidence, message: Announcement, strange: list[str], ex
     begin_s = {track.turtle: track.rows[0][0] for track in evidence.recording.tracks}.get(strange[0])
     where = evidence.place("publish")
     if begin_s is None:
-        observed = f"{at} contains {a_list([shorten(name) for name in strange])}, but no such turtle exists."
+        observed = f"{at} contains {a_list([shorten(name) for name in strange])}, but there is no such target."
         text = "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives."
+        if strange[0] == "turtle1":
+            text = "turtle1 drives to the targets, so it is not a target itself."
     elif begin_s > message.t_s:
         observed = f"{at} contains {shorten(strange[0])}, which did not exist before {begin_s:.1f} s."
         text = (

@@ -156,7 +156,7 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
             observed = f"{subject} is not closed: it ends {360.0 - degrees:.0f} degrees too early."
         else:
             observed = f"{subject} continues for {degrees - 360.0:.0f} degrees after it was closed."
-        cause = "A full circle takes 2 pi / angular.z seconds. How many timer calls does a full circle take?"
+        cause = "A full circle takes 2 pi / abs(angular.z) seconds. How many timer calls does a full circle take?"
         if last and degrees > 360.0:
             cause = f"After the second lobe, the turtle must stand still. {ZEROS}"
         if full.holds(math.radians(degrees)):

@@ -70,7 +70,8 @@ def own_constants(evidence: Evidence, params: OwnConstants) -> Finding:
         if is_now is not None and not math.isclose(is_now, value):
             return failed(f"{name} is {is_now}.", expected, Cause("own-number-missing", NOT_WRITTEN, where))
         if is_now is not None and not any(_uses(each, name) for each in modules):
-            return failed(f"No code uses {name}.", expected, Cause("own-number-missing", NOT_USED, where))
+            observed = f"{shorten(file, 60)} does not use {name}."
+            return failed(observed, expected, Cause("own-number-missing", NOT_USED, where))
     return passed(expected)
 
 
@@ -84,7 +85,7 @@ def _last_assignment(modules: tuple[Module, ...], name: str) -> tuple[Module, as
 
 
 def _assignments(module: Module) -> Iterator[tuple[ast.expr, ast.expr]]:
-    """Yield the targets of all assignments with their values, including those of `a, b = 1, 2`."""
+    """Yield the target and the value of each assignment with =, including those of `a, b = 1, 2`."""
     for node in module.nodes:
         if isinstance(node, ast.AnnAssign) and node.value is not None:
             yield node.target, node.value

@@ -80,7 +80,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
             name = _imported(node, SOURCE_MODULES) or (getattr(node, "attr", "") if _is_of_code(node) else "")
             if name:
                 return failed(
-                    f"The tests use {shorten(name, 60)}, which looks at the code of the node.",
+                    f"The tests use {shorten(name, 60)}, which can look at the code of the node.",
                     expected,
                     Cause("looks-at-source", LOOKS, Where(module.file, getattr(node, "lineno", None))),
                 )
@@ -92,7 +92,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
         for node in module.nodes:
             name = _imported(node, PROCESS_MODULES)
             if name:
-                observed = f"The tests import {shorten(name, 60)}, which starts other processes."
+                observed = f"The tests import {shorten(name, 60)}, which can start other processes."
                 where = Where(module.file, getattr(node, "lineno", None))
                 return failed(observed, expected, Cause("starts-a-process", SPIN, where))
     return passed("The tests watch the node from outside.")

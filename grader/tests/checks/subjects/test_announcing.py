@@ -129,9 +129,14 @@ NEVER_NAMED = tuple(said(t_s, "target1") for t_s in TIMES)
             with_one("mouse"),
         ),
         (
-            "The message at 2.1 s contains target9, but no such turtle exists.",
+            "The message at 2.1 s contains target9, but there is no such target.",
             with_one("target1 target2 target3 target9"),
             with_one("target1 target2 target3"),
+        ),
+        (
+            "turtle1 drives to the targets, so it is not a target itself.",
+            with_one("turtle1 target1 target2 target3"),
+            with_one("target1 target2 target3 target9"),
         ),
         (
             "Remove a name when its turtle is caught, and add a name when the response from /spawn arrives.",

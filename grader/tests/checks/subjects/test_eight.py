@@ -165,7 +165,11 @@ Part = tuple[int, float, float]
         ("The lobes are too large.", (lobe(1, radius_m=3.0), lobe(-1)), ((60, 2.0, 0.0), lobe(1))),
         ("The turtle drove straight into the wall.", ((60, 2.0, 0.0), lobe(1)), (lobe(1, radius_m=3.0), lobe(-1))),
         ("The turtle ran into a wall.", ((20, 3.0, 0.0), lobe(-1), lobe(1)), ((5, 3.0, 0.0), lobe(-1), lobe(1))),
-        ("A full circle takes 2 pi / angular.z seconds.", (lobe(1, degrees=315.0), lobe(-1)), (lobe(1, 1.3), lobe(-1))),
+        (
+            "A full circle takes 2 pi / abs(angular.z) seconds.",
+            (lobe(1, degrees=315.0), lobe(-1)),
+            (lobe(1, 1.3), lobe(-1)),
+        ),
         ("The radius is linear.x divided by angular.z.", (lobe(1, 1.3), lobe(-1)), (lobe(1, degrees=315.0), lobe(-1))),
         (
             "After the second lobe, the turtle must stand still. Publish a",

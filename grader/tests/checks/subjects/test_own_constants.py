@@ -73,7 +73,7 @@ def test_the_numbers_may_be_in_a_module_that_the_node_imports() -> None:
 
 def test_a_constant_that_no_code_uses_is_not_enough() -> None:
     finding = judged(UNUSED + USES.replace("= TURN", "= 1.5"))
-    assert (finding.observed, finding.diagnosis) == ("No code uses TURN.", "own-number-missing")
+    assert (finding.observed, finding.diagnosis) == (f"{FILE} does not use TURN.", "own-number-missing")
     assert str(finding.where) == f"{FILE}:2"
     assert judged(UNUSED + "print(SPEED, TURN)\nTIMEOUT\n").status is Status.PASSED
 

@@ -61,10 +61,10 @@ ASSERT = "def test_it(bench):\n    assert bench.count() == 10\n"
     [
         ("The tests watch the node from outside.", ASSERT, f"import inspect\n{ASSERT}"),
         ("The tests create the node and watch what it publishes.", f"import inspect\n{ASSERT}", ASSERT),
-        ("The tests use inspect, which looks at the code of the node.", "import inspect\n", "import math\n"),
+        ("The tests use inspect, which can look at the code of the node.", "import inspect\n", "import math\n"),
         ("The tests use read_text, which can read a file.", "text = p.read_text()\n", "text = p.write_text('')\n"),
         ("The same node can be written in many ways. A test of the source", "import ast\n", "import subprocess\n"),
-        ("The tests import subprocess, which starts other processes.", "import subprocess\n", "import ast\n"),
+        ("The tests import subprocess, which can start other processes.", "import subprocess\n", "import ast\n"),
         ("Import the class, create the node in the test, and spin it.", "import subprocess\n", "import ast\n"),
     ],
 )
