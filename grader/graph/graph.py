@@ -1,7 +1,7 @@
 """The ROS graph as a picture: choose the nodes and topics to show, and write them as DOT or as text.
 
 Nodes are ellipses, topics are boxes, and arrows point in the direction of the messages. A graph comes from the live
-system (grader/view/rqt_graph.py) or from a recording (`grader.trial.recording.Graph`).
+system (`grader.graph.endpoints.Observed`) or from a recording (`grader.trial.recording.Graph`).
 """
 
 from __future__ import annotations

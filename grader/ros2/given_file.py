@@ -1,6 +1,6 @@
 """Read what a user gives: check a file before it is opened, and limit the size of standard input.
 
-Opening a pipe can wait for ever, and reading from a device may never end.
+Opening a pipe can wait forever, and reading from a device may never end.
 """
 
 from __future__ import annotations

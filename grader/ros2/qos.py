@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from grader.ros.failure import Ros2Error
+
 if TYPE_CHECKING:
     import argparse
 
@@ -52,7 +54,11 @@ def is_chosen(args: argparse.Namespace) -> bool:
 
 
 def profile(args: argparse.Namespace) -> Any:  # noqa: ANN401
-    """Return the rclpy.qos.QoSProfile that the options specify."""
+    """Return the rclpy.qos.QoSProfile that the options specify.
+
+    Raises:
+        Ros2Error: the lease duration is too long.
+    """
     from rclpy import qos
     from rclpy.duration import Duration
 
@@ -64,7 +70,11 @@ def profile(args: argparse.Namespace) -> Any:  # noqa: ANN401
             setattr(made, policy, kind.get_from_short_key(wanted))
     lease_s = args.qos_liveliness_lease_duration_seconds
     if lease_s and lease_s >= 0:
-        made.liveliness_lease_duration = Duration(seconds=lease_s)
+        try:
+            made.liveliness_lease_duration = Duration(seconds=lease_s)
+        except OverflowError as error:
+            message = f"The liveliness lease duration is too long: {lease_s:g} s"
+            raise Ros2Error(message) from error
     if args.qos_depth and args.qos_depth >= 0:
         made.depth = args.qos_depth
     elif made.durability == qos.QoSDurabilityPolicy.TRANSIENT_LOCAL and made.depth == 0:

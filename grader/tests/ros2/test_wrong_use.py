@@ -138,6 +138,7 @@ WITH_TURTLESIM = {
     "ros2 action type /turtle1/rotate": (1, ["Did you mean '/turtle1/rotate_absolute'?"]),
     "ros2 service info /spwn": (1, ["Unknown service '/spwn'", "Did you mean '/spawn'?"]),
     "ros2 service echo /spwn": (1, ["Cannot find type for '/spwn'", "Did you mean '/spawn'?"]),
+    "ros2 topic echo /turtle1/pose --qos-liveliness-lease-duration-seconds 1e30": (1, ["too long: 1e+30 s"]),
     "ros2 service echo '/odd name' std_srvs/srv/Empty": (1, ["topic name '/odd name/_service_event' is invalid"]),
     "ros2 action send_goal '/odd name' turtlesim/action/RotateAbsolute": (1, ["action '/odd name' cannot be used: "]),
     "ros2 node info turtlesim": (1, ["Unable to find node 'turtlesim'", "Did you mean '/turtlesim'?"]),
