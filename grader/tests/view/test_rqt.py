@@ -76,7 +76,7 @@ def test_rqt_plot_shows_values_and_says_what_cannot_be_plotted(driven: World, br
         }""")
         for field, problem in [
             ("/turtle1/pose/z", "has no attribute 'z'"),
-            ("/nowhere/x", "Waiting for this topic."),
+            ("/nowhere/x", "Waiting for a publisher of this topic."),
             ("/rosout/name", "'name' is not a number"),
         ]:
             tab.get_by_label("Field", exact=True).fill(field)

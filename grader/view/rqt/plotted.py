@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 MOST_FIELDS = 20
 """The maximum number of fields that the user adds, and of numbers that are plotted for a field with several numbers."""
 _QOS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+_WAITING = "Waiting for a publisher of this topic."
 
 Sample = tuple[float, float | None]
 """A time (in s from an arbitrary start) and the value at this time. The value is None if it is infinite or not a
@@ -60,7 +61,7 @@ class Plotted:
         """
         for name in expand(typed):
             if len(self._wanted) < MOST_FIELDS:
-                self._wanted.setdefault(name, "Waiting for this topic.")
+                self._wanted.setdefault(name, _WAITING)
 
     def remove(self, name: str) -> None:
         """Stop plotting a field."""
@@ -74,7 +75,7 @@ class Plotted:
                 self._node.destroy_subscription(self._topics.pop(topic).subscription)
 
     def look(self, observed: Observed) -> None:
-        """Subscribe to the topic of each wanted field as soon as the topic exists."""
+        """Subscribe to the topic of each wanted field as soon as the topic has a publisher."""
         types = {end.topic: end.type for end in observed.ends if end.kind == "publisher"}
         for name, problem in list(self._wanted.items()):
             if problem:
@@ -94,7 +95,7 @@ class Plotted:
         """Subscribe to the topic of this field. Return "", or the reason why the subscription is not possible yet."""
         topic = topic_of(name, types)
         if topic is None:
-            return "Waiting for this topic."
+            return _WAITING
         try:
             made = message_values.load_type(types[topic], "msg")
             paths = numeric(made(), name[len(topic) :].strip("/").replace("/", "."))
