@@ -26,7 +26,7 @@ NOTHING: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": [
 
 
 def laid_out(drawn: Picture) -> dict[str, Any]:
-    """Return two layouts of the graph: "wide", from left to right, and "narrow", from top to bottom, for a phone.
+    """Return two layouts of the graph: "wide", from left to right, and "narrow", from top to bottom.
 
     A layout has the size of the graph (points), its nodes and topics with centre and size, and its arrows. The points
     of an arrow are the start of a Bezier curve and three points for each segment. `tip` is the tip of the arrowhead.

@@ -1,4 +1,4 @@
-"""Subscribe to /rosout, the log of all nodes, for the page of rqt_console."""
+"""Collect the log messages of all nodes from /rosout, for the pages of rqt_console, rqt and `grader open`."""
 
 from __future__ import annotations
 
