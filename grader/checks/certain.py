@@ -102,7 +102,7 @@ CONCLUSIONS: frozenset[Diagnosis] = frozenset(
         "wrong-rate",
     }
 )
-"""Conclusions from the source code or from values, neither of which changes on a busy machine."""
+"""Conclusions from the source code or from values, which are the same on a busy machine."""
 
 SHOWN = FROM_FILES | FROM_EXCEPTIONS | FROM_GRAPH | FROM_CONTENT
 FACTS = SHOWN | FROM_ORDER

@@ -61,7 +61,7 @@ def _reversed(scene: CrashScene, holder: str) -> Cause | None:
     for node in ast.walk(scene.function) if scene.function is not None else ():
         returns = isinstance(node, ast.If) and isinstance(node.body[0], ast.Return) and node.lineno < scene.line
         if isinstance(node, ast.If) and returns and ast.unparse(node.test) == f"{holder} is not None":
-            text = f"This condition is the wrong way round: the method returns if {shorten(holder)} is not None."
+            text = f"This condition is reversed: the function returns if {shorten(holder)} is not None."
             return Cause("none-before-message", text, scene.at(node))
     return None
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode
 
 GENERATORS = frozenset({"Random", "RandomState", "default_rng"})
-"""Functions of `random` and `numpy.random` that create a generator of random numbers."""
+"""Functions and classes of `random` and `numpy.random` that create a generator of random numbers."""
 SEED = "seed"
 NUMPY = "numpy.random"
 MODULES = frozenset({"random", NUMPY})

@@ -144,7 +144,7 @@ def _is_square(side: ast.expr, module: Module, reach_m: float) -> bool:
 
 
 def _is_condition_of_call(module: Module, test: ast.Compare) -> bool:
-    """Return whether an if statement with this condition begins by calling catch."""
+    """Return whether this is the condition of an if statement whose first statement calls a function that catches."""
     for node in module.nodes:
         if isinstance(node, ast.If) and node.test is test:
             first = node.body[0]

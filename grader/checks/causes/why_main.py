@@ -55,7 +55,7 @@ def why_main(scene: CrashScene) -> Cause | None:
 
 
 def _is_entry(evidence: Evidence, function: str) -> bool:
-    """Return whether the entry point names this function, and it is not called main."""
+    """Return whether the entry point names this function, and the name of the function is not main."""
     return function != "main" and (evidence.entry_point() or "").partition(":")[2].strip() == function
 
 

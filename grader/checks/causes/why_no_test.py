@@ -31,7 +31,7 @@ def why_no_test(code: TestCode) -> Cause:
         if misnamed is not None:
             text = f"pytest ignores {shorten(misnamed.name, 60)}, because its name does not begin with test."
             return Cause("test-function-name", text, Where(module.file, misnamed.lineno))
-    return Cause("no-test-function", "A test is a function whose name begins with test_.", Where(code.files[0].file))
+    return Cause("no-test-function", "A test is a function whose name begins with test.", Where(code.files[0].file))
 
 
 def _has_test(node: ast.ClassDef) -> bool:

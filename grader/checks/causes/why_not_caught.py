@@ -69,7 +69,10 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
 
 
 def _where_sent(evidence: Evidence) -> str:
-    """Return a sentence about a node whose commands did not arrive, with another topic if it publishes on one."""
+    """Return a sentence about a node whose commands did not arrive.
+
+    If the node publishes on another topic whose name ends with /cmd_vel, the sentence names this topic.
+    """
     found = activity.endpoints(evidence.recording, "publisher")
     topics = sorted({each.topic for each in found if each.topic.endswith("/cmd_vel")} - {COMMANDS})
     if not topics:

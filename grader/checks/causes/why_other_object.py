@@ -102,7 +102,7 @@ def subscription_for_publisher(scene: CrashScene) -> Cause | None:
 def not_called(scene: CrashScene, name: str) -> Cause:
     """Return the reason why a function or a method lacks the attribute `name`.
 
-    The function may not be called, or a method may have the same name as an attribute that is not assigned yet.
+    Perhaps its call has no parentheses, or a method has the same name as an attribute that is not assigned yet.
     """
     holders = {dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name}
     for own in scene.classes:

@@ -1,4 +1,4 @@
-"""Explain why an import from the student's own package failed: a missing __init__.py, or a circular import."""
+"""Explain why an import from the student's own package failed: a folder is not installed, or imports are circular."""
 
 from __future__ import annotations
 

@@ -185,13 +185,13 @@ def compared_exactly(evidence: Evidence) -> Cause | None:
 
 
 def _is_coordinate(side: ast.expr) -> bool:
-    """Return whether the expression is a coordinate of the turtle's pose. Many programs call the goal goal_pose."""
+    """Return whether the expression is a coordinate of the turtle's pose. A name such as goal_pose names a goal."""
     name = (dotted(side) or "").lower()
     return name.rpartition(".")[2] in COORDINATES and "pose" in name and not any(word in name for word in GOALS)
 
 
 def _is_goal(side: ast.expr, module: Module) -> bool:
-    """Return whether the expression is the coordinate of a goal: a positive constant, or named after a goal."""
+    """Return whether the expression may be a coordinate of a goal: a positive constant, or a name with a word in GOALS."""
     value = number(side, module.names)
     return value > 0.0 if value is not None else any(word in ast.unparse(side).lower() for word in GOALS)
 

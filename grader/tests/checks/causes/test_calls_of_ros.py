@@ -154,7 +154,7 @@ class Driver(Node):
 """
 FIRST = "self.pose is None until it gets a value. Check for None before you use the value."
 CLEARED = "Line 9 sets self.pose to None, and the next line uses it."
-REVERSED = "This condition is the wrong way round: the method returns if self.pose is not None."
+REVERSED = "This condition is reversed: the function returns if self.pose is not None."
 
 
 @pytest.mark.parametrize(

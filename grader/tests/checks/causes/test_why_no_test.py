@@ -46,7 +46,7 @@ INIT = "    def __init__(self):\n        pass\n"
             f"{CHECK}check_it(1)\n",
             "pytest ignores check_it, because its name does not begin with test.",
         ),
-        ("test/test_guard.py", "x = 1\n", CHECK, "A test is a function whose name begins with test_."),
+        ("test/test_guard.py", "x = 1\n", CHECK, "A test is a function whose name begins with test."),
     ],
 )
 def test_what_hides_a_test_is_told(file: str, source: str, near: str | None, words: str) -> None:
