@@ -64,7 +64,7 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
 
 
 def _created(scene: CrashScene, names: str) -> Cause | None:
-    """Return the cause if the line creates an object of a class of the file without the arguments `names`, else None."""
+    """Return the cause if the line creates an object of a class in this file without these arguments, else None."""
     for own in scene.classes:
         if any(method.name == "__init__" for method in methods(own)) and scene.calls_on_line(own.name):
             text = f"An object of {own.name} is created here without a value for {shorten(names)}."

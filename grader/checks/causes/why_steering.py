@@ -191,7 +191,7 @@ def _is_coordinate(side: ast.expr) -> bool:
 
 
 def _is_goal(side: ast.expr, module: Module) -> bool:
-    """Return whether the expression may be a coordinate of a goal: a positive constant, or a name with a word in GOALS."""
+    """Return whether the expression may be a coordinate of a goal: a positive constant, or a name as in GOALS."""
     value = number(side, module.names)
     return value > 0.0 if value is not None else any(word in ast.unparse(side).lower() for word in GOALS)
 
