@@ -63,9 +63,9 @@ def _points(table: Table) -> PointsInput:
 
 def _bag(table: Table) -> BagInput:
     id_ = table.string("id", ID, ID_WORDS)
-    commands = table.number("commands", 0, MOST_POINTS, f"a number from 0 to {MOST_POINTS}", 0)
+    commands = table.whole("commands", 0, MOST_POINTS, 0)
     rate = table.number("rate_hz", 0.1, 1000.0, "from 0.1 to 1000 (Hz)")
-    bag = BagInput(id_, _arc(table), rate, int(commands), poses=not table.flag("without_poses"))
+    bag = BagInput(id_, _arc(table), rate, commands, poses=not table.flag("without_poses"))
     table.finish()
     return bag
 
@@ -80,6 +80,6 @@ def _arc(table: Table) -> Arc:
         radius_m=table.number("radius_m", 1e-3, MOST_M, f"from 0.001 to {MOST_M:g} (m)"),
         from_deg=table.number("from_deg", -most_deg, most_deg, degrees, 0.0),
         to_deg=table.number("to_deg", -most_deg, most_deg, degrees, 360.0),
-        count=int(table.number("count", 0, MOST_POINTS, f"a number from 0 to {MOST_POINTS}")),
+        count=table.whole("count", 0, MOST_POINTS),
         noise_m=table.number("noise_m", 0.0, MOST_M, f"from 0 to {MOST_M:g} (m)", 0.0),
     )

@@ -112,7 +112,7 @@ def _scenario(table: Table, node: str) -> Scenario:
         anywhere=start == "anywhere",
         start_limits=_start_limits(table.table("start_pose")) if "start_pose" in table.values else None,
         rename=table.strings("rename"),
-        pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
+        pose_every=table.whole("pose_every", 1, 1000, default=1),
         pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
         answers_after_s=table.number("answers_after_s", 0.0, 10.0, "from 0 to 10 (s)", default=0.0),
         calls=tuple(_call(each) for each in table.tables("call"))
@@ -122,7 +122,7 @@ def _scenario(table: Table, node: str) -> Scenario:
         alone_s=table.number("alone_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)")
         if "alone_s" in table.values
         else None,
-        targets=int(table.number("targets", 0, MOST_TARGETS, f"a number from 0 to {MOST_TARGETS}", default=0)),
+        targets=table.whole("targets", 0, MOST_TARGETS, default=0),
         withdraws=table.flag("withdraws"),
         catch_from_s=table.number(
             "catch_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0

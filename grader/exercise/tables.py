@@ -89,6 +89,15 @@ class Table:
 
         return float(self._get(key, allowed, good, default=default) or 0.0)
 
+    def whole(self, key: str, low: int, high: int, default: int | None = None) -> int:
+        """Return a whole number with low <= number <= high."""
+
+        def good(value: object) -> bool:
+            is_whole = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
+            return is_whole and not isinstance(value, bool) and low <= value <= high  # type: ignore[operator]
+
+        return int(self._get(key, f"a whole number from {low} to {high}", good, default=default) or 0)
+
     def limits(self, key: str, most: float) -> tuple[float, float]:
         """Return two finite numbers from -most to most, in ascending order.
 

@@ -35,7 +35,7 @@ def read_tests(table: Table) -> TestsSpec:
     spec = TestsSpec(
         module=tests.string("module", MODULE, "a module, as in my_robot_controller.wall_guard"),
         name=tests.string("class", CLASS, "the name of a class, as in WallGuard"),
-        right_runs=int(tests.number("right_runs", 1, 10, "a whole number from 1 to 10", default=3)),
+        right_runs=tests.whole("right_runs", 1, 10, default=3),
         duration_s=duration_s,
         right=right,
         broken=tuple(_broken(each, right) for each in broken),

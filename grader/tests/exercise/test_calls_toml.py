@@ -58,6 +58,7 @@ def test_a_program_is_started_with_a_bag() -> None:
         ({**FIT, "points": [FIT["points"][0]] * 2}, 'the id "arc" is used more than once'),
         ({**FIT, "points": [{"id": "x", "x": [1], "y": ["a"]}]}, '"y" is'),
         ({**FIT, "points": [{**FIT["points"][0], "radius_m": -1}]}, "radius_m"),
+        ({**FIT, "points": [{**FIT["points"][0], "count": 20.5}]}, '"count" is 20.5; it must be a whole number from 0'),
         ({**FIT, "duration_s": 5.0}, "duration_s"),
         ({"id": "report", "bag": [BAG]}, "executable"),
         ({"id": "report", "executable": "report", "bag": [{**BAG, "rate_hz": 0}]}, "rate_hz"),

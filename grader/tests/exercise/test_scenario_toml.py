@@ -94,6 +94,8 @@ def test_a_trial_may_limit_its_start_pose_and_withdraw_a_target() -> None:
         ({"call": [{**CALL, "answer": 3}]}, "answer"),
         ({"set": [{"at_s": 2.0, "parameter": "radius"}]}, "value"),
         ({"parameters": {"radius": []}}, "parameters"),
+        ({"pose_every": 2.5}, "pose_every"),
+        ({"targets": True}, "targets"),
     ],
 )
 def test_a_wrong_key_is_named(more: dict[str, Any], key: str) -> None:

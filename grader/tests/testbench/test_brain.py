@@ -110,6 +110,7 @@ def test_a_run_cannot_create_nodes_without_end() -> None:
         ('turn_field = "angular.x"', 'turn_field = "z"', '"turn_field" must be one of'),
         ('walls = ["left", "right"]', 'walls = ["west"]', '"walls" may contain'),
         ("right_runs = 3", "right_runs = 0", '"right_runs" is 0'),
+        ("right_runs = 3", "right_runs = 2.5", '"right_runs" is 2.5; it must be a whole number from 1 to 10'),
         ('own = ["speed_m_s"', 'own = ["topic"', '"own" contains topic'),
         ('own = ["speed_m_s"', 'own = ["slow_m_s"', '"own" contains slow_m_s'),
     ],
