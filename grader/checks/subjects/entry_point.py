@@ -63,6 +63,8 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
     if not _is_installed(evidence, file):
         observed = f"{file} is not installed, so {module_name} cannot be imported."
         cause = "The packages argument of setup() does not list the module's folder, or the folder has no __init__.py."
+        if "/" not in file:
+            cause = f"{file} is next to setup.py. The file belongs in the folder {evidence.exercise.package}."
         return failed(
             observed,
             f"The entry point {evidence.trial.executable} needs this module.",

@@ -84,7 +84,7 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
                 "callback of a timer."
             )
             return failed(observed, expected, Cause("every-message", text, where))
-        text = "Log the number in the callback of the timer while there is a goal."
+        text = "Log the number in the callback of a timer while there is a goal."
         return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
     return passed("The lines show how far the turtle still has to turn.")
 

@@ -73,7 +73,7 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
         cause = "Delete the folder, and record again."
         return failed(f"{params.bag} cannot be read: {bag.detail}.", expected, Cause("bag-damaged", cause, where))
     if not sum(bag.counts.values()):
-        cause = "The recording ended before anything arrived, or no node published anything during the recording."
+        cause = "The recording ended before anything arrived, or no node published on the topics that were recorded."
         return failed(f"The bag {params.bag} is empty.", expected, Cause("bag-empty", cause, where))
     return passed(f"The bag contains {count(sum(bag.counts.values()), 'message')}.")
 

@@ -85,6 +85,14 @@ def test_each_fault_of_the_entry_point(files: Files, build: Build, diagnosis: st
     assert str(found.where).startswith(where)
 
 
+@pytest.mark.parametrize("file", ["draw_circle.py", "my_robot_controller/more/node.py"])
+def test_a_module_next_to_setup_py_is_not_said_to_be_in_a_folder(file: str) -> None:
+    found = of("entry-point", {file: NODE}, leads_to(f"{file.removesuffix('.py').replace('/', '.')}:main"))
+    beside = found.cause == "draw_circle.py is next to setup.py. The file belongs in the folder my_robot_controller."
+    assert (found.diagnosis, beside) == ("module-not-installed", "/" not in file)
+    assert ("does not list the module's folder" in found.cause) == ("/" in file)
+
+
 def test_a_setup_cfg_that_is_there_is_a_place_to_look() -> None:
     nowhere = replace(BUILD, executables=())
     assert of("entry-point", {"setup.cfg": None}, nowhere).cause == "setup.cfg is missing."

@@ -120,7 +120,7 @@ def test_the_number_of_lines_is_told() -> None:
     assert "The feedback arrives 62.5 times per second." in about(RIGHT, many)
     few = about(RIGHT, TIMES[:1])
     assert "1 line with the feedback appeared while the turtle turned for 3.0 s." in few
-    assert "Log the number in the callback of the timer while there is a goal." in few
+    assert "Log the number in the callback of a timer while there is a goal." in few
     assert "The feedback arrives 62.5 times per second." not in few
     assert "with the feedback appeared" not in about(RIGHT)
 

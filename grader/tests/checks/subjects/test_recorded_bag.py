@@ -152,7 +152,7 @@ def test_an_empty_bag_is_told(tmp_path: Path) -> None:
     empty, one = (told(judged("bag", files=bag_of(each, tmp_path))) for each in ([], WHOLE[:1]))
     for words in (
         "The bag circle_bag is empty.",
-        "The recording ended before anything arrived, or no node published anything during the recording.",
+        "The recording ended before anything arrived, or no node published on the topics that were recorded.",
     ):
         assert words in empty
         assert words not in one
