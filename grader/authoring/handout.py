@@ -17,9 +17,9 @@ _PAGES = (
     *("learner.md", "commands.md", "glossary.md", "kinds.md", "ros2-differences.md", "security.md"),
     "sandbox.md",
 )
-"""The pages of docs/ that students need. The others are for instructors, authors and developers."""
+"""The pages of docs/ that students get: those for learners, and those that explain the checks and the sandbox."""
 _TARGETS = ("help", "demo", "notebooks", "clean", "python3")
-"""The targets of the Makefile that need neither the tests, the solutions nor the other pages."""
+"""The targets of the Makefile for students. They need neither the tests, the solutions nor the other pages."""
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc", "nbgrader_config.py")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
 """Folders that a wheel puts into the package (grader/setup/hatch_build.py). In a checkout, their files are next to the

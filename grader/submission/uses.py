@@ -2,8 +2,8 @@
 
 A search for calls to `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
 1)` or `getattr(time, "sleep")`. If a function in another file calls `sleep`, such a search does not find that call
-either. Therefore, every mention of one of the functions counts as a use, and names in other files that refer to one of
-the functions are followed.
+either. Therefore, each mention that may refer to one of the functions counts as a use, and names in other files that
+refer to one of the functions are followed.
 """
 
 from __future__ import annotations
