@@ -21,7 +21,21 @@ XML = re.compile(
     r"|invalid token|undefined entity"
 )
 """Matches the messages of an XML parser about text that is not well-formed."""
-BARE_AMPERSAND = re.compile(r"&(?!#?\w+;)")
+AMPERSAND = "In XML, & begins the name of a character. Write &amp; for the character & itself."
+MISTAKES = (
+    ("undefined entity", r"", AMPERSAND),
+    ("duplicate attribute", r"", "An attribute may occur only once in a tag."),
+    ("unclosed", r"", "A tag or a comment begins on this line, but does not end: > or --> is missing."),
+    ("no element|syntax error", r"", "The first thing in an XML file is a tag, such as <package>."),
+    ("", r"&(?!#?\w+;)", AMPERSAND),
+    (
+        "",
+        r"<(?![\w/!?])",
+        "In XML, the name of a tag follows < without a space. Write &lt; for the character < itself.",
+    ),
+    ("", r"<[^>]*\s[\w:]+=(?![\"'\s])", "The value of an attribute needs quotation marks."),
+)
+"""Tuples (pattern of the problem, pattern of the line, cause). The first pair of patterns that match is used."""
 UNKNOWN_TAG = re.compile(
     r"\(with format version (?P<format>\d)\) must not contain the following tags: (?P<tag>[^\s,]{1,60})"
 )
@@ -73,7 +87,6 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
     """Return the reason why the file is not well-formed XML. `line` is the line at which the XML parser stopped."""
     if not data.startswith(UTF_16) and not _is_utf8(data):
         return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, line))
-    cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
     text = _line_text(data, line)
     end = end_of_root(data)
     if end is not None and line is not None:
@@ -81,11 +94,12 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
         cause = f"</{shorten(last, 30)}> on line {at} closes the first tag. No text or tag may follow it"
         more = text.strip() if line > at else ""
         cause += f', but line {line} contains "{shorten(more, 30)}".' if more else "."
-    elif "mismatched tag" in problem:
+    elif re.search("mismatched tag|no element", problem) and open_tag(data)[0]:
         name, line = open_tag(data)
         cause = f"<{shorten(name, 30)}> on line {line} has no closing tag </{shorten(name, 30)}> in the right place."
-    elif BARE_AMPERSAND.search(text):
-        cause = "In XML, & begins the name of a character. Write &amp; for the character & itself."
+    else:
+        known = (each for of, of_line, each in MISTAKES if re.search(of, problem) and re.search(of_line, text))
+        cause = next(known, "")
     return Cause("xml-malformed", cause, Where(FILE, line))
 
 

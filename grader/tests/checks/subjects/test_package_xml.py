@@ -35,7 +35,7 @@ def test_a_good_package_passes(check: str, build: Build) -> None:
     ("check", "files", "diagnosis", "where"),
     [
         ("package-xml", {"package.xml": None}, "package-xml-missing", "setup.py"),
-        ("package-xml", xml("</package>"), "xml-malformed", "package.xml:15"),
+        ("package-xml", xml("</package>"), "xml-malformed", "package.xml:2"),
         ("package-xml", xml("  <license>MIT</license>\n"), "package-xml-invalid", "package.xml:2"),
         ("package-xml", xml('format="3"', 'format="9"'), "package-xml-invalid", "package.xml:2"),
         ("package-xml", xml('format="3"', 'format="x"'), "package-xml-invalid", "package.xml:2"),
