@@ -56,7 +56,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "resource-marker": "data_files does not install the marker file for the resource index",
     },
     "Entry points": {
-        "entry-point-missing": "setup.py has no entry point for the executable",
+        "entry-point-missing": "setup.py has no entry point for the executable, or the build did not install it",
         "entry-point-name": "the name of the entry point is almost right",
         "entry-point-commented": "the entry point is inside a comment",
         "entry-point-elsewhere": "the entry point is in another list, not in console_scripts",

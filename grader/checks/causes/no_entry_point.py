@@ -160,6 +160,9 @@ def _comment(source: bytes, executable: str) -> int | None:
 
 def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
     executable, files = evidence.trial.executable, evidence.submission.files
+    if any(point.name == executable for point in points):
+        text = "setup.py contains this entry point, but the build did not install it."
+        return Cause("entry-point-missing", text)
     for point in points:
         file = module_file((point.target or "").partition(":")[0], files)
         if file is not None and file.rpartition("/")[2] == f"{executable}.py":

@@ -69,6 +69,12 @@ def setup_py(instead: str, more: str = "") -> Files:
             "setup.py:13",
             "The entry point is not in the list console_scripts.",
         ),
+        (
+            {},
+            "entry-point-missing",
+            "setup.py:14",
+            "setup.py contains this entry point, but the build did not install it.",
+        ),
         ({"setup.py": None}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
         ({"setup.py": "setup(\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
         ({"setup.py": "print(3)\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} exists, but"),
