@@ -74,9 +74,12 @@ def always_false(code: TestCode) -> Cause | None:
 
     Return None if there is no such test.
 
-    A test that may return, or skip itself, before it fails does not count.
+    A test that may return, or skip itself, before it fails does not count. Neither does a test with a decorator that
+    skips it or expects it to fail.
     """
     for test in code.tests:
+        if any(word in ast.unparse(each) for each in test.node.decorator_list for word in ("skip", "xfail")):
+            continue
         for node in test.node.body:
             if any(isinstance(each, ast.Return) or _is_call_of(each, "skip") for each in ast.walk(node)):
                 break

@@ -76,6 +76,16 @@ def test_only_a_test_that_cannot_end_earlier_always_fails(body: str, *, found: b
 
 
 @pytest.mark.parametrize(
+    ("mark", "found"), [("skip", False), ("xfail(strict=True)", False), ("parametrize('a', [1])", True)]
+)
+def test_a_test_that_is_marked_as_skipped_or_failing_does_not_count(mark: str, *, found: bool) -> None:
+    given = read_test_code(
+        {"test/test_guard.py": f"@pytest.mark.{mark}\ndef test_it():\n    assert False\n".encode()}, "x"
+    )
+    assert (always_false(given) is not None) == found
+
+
+@pytest.mark.parametrize(
     ("handler", "after", "found"),
     [
         ("except AssertionError:\n        print('it drives')", "", True),
