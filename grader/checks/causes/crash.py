@@ -38,7 +38,7 @@ MEANINGS = {
     "AssertionError": "An assertion failed: a condition was false, or a message field got a value of the wrong type.",
     "AttributeError": "The object has no attribute or method with that name. Check the name letter by letter.",
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
-    "ImportError": "That name cannot be imported from this module. Check the name letter by letter.",
+    "ImportError": "Python could not do this import. The message of the exception gives the reason.",
     "IndentationError": "All lines of a block must have the same indentation.",
     "IndexError": "The sequence, such as a list or a string, has no item with this index.",
     "InvalidNodeNameException": "A node name has only letters, digits and underscores. It does not begin with a digit.",

@@ -10,6 +10,7 @@ from grader.checks.causes import ros_names
 from grader.checks.causes.why_own_import import why_circular, why_no_own_module
 from grader.checks.edit import at
 from grader.common.words import nearest, shorten
+from grader.submission.code import import_path
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
@@ -33,6 +34,12 @@ def why_no_import(scene: CrashScene) -> Cause | None:
     module, name = NO_MODULE.search(text), NO_NAME.search(text)
     if module is not None:
         return _no_module(scene, module["name"])
+    if "attempted relative import" in text:
+        text = (
+            "A dot at the beginning of a module name stands for the package that contains this file. Write the full "
+            "name of the module instead."
+        )
+        return Cause("crash", text)
     return _no_name(scene, name["name"], name["module"]) if name is not None else why_circular(scene)
 
 
@@ -60,10 +67,14 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     own = why_no_own_module(scene, name)
     if own is not None:
         return own
-    guess = nearest(name, {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES)}, alike=0.8)
+    inside = {import_path(each).removesuffix(".py").replace("/", ".") for each in files if each.endswith(".py")}
+    own_modules = {each for each in inside if each.count(".") == name.count(".") and not each.endswith("__init__")}
+    known = {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES), *own_modules}
+    guess = nearest(name, known, alike=0.8)
     if guess is not None:
         text = f"A similar module exists: {guess}. Compare the two names letter by letter."
-        return Cause("module-misspelt", text).fixed_by(at(scene.crash.where, name, guess.partition(".")[0]))
+        right = guess if "." in name else guess.partition(".")[0]
+        return Cause("module-misspelt", text).fixed_by(at(scene.crash.where, name, right))
     manifest = scene.evidence.manifest
     declared = manifest is not None and top in (*manifest.run_depends, *manifest.other_depends)
     if declared or top.endswith(OWN_INTERFACES):

@@ -36,6 +36,11 @@ CLASS = "class Driver(Node):\n    def __init__(self):\n        super().__init__(
         ),
         ("import geometry_msg  # crashed\n", "ModuleNotFoundError: No module named 'geometry_msg'", "geometry_msgs"),
         (
+            "from geometry_msgs.msgs import Twist  # crashed\n",
+            "ModuleNotFoundError: No module named 'geometry_msgs.msgs'",
+            "from geometry_msgs.msg import Twist",
+        ),
+        (
             "msg.linear.x = 2  # crashed\n",
             "AssertionError: The 'x' field must be of type 'float'",
             "msg.linear.x = 2.0",

@@ -18,6 +18,11 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
         ("No module named 'turtlesim_msgs'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
         ("No module named 'turtlesim_msgs.msg'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
         ("No module named 'helper'", "sibling-import", "my_robot_controller/helper.py exists, but"),
+        (
+            "No module named 'my_robot_controller.helpers'",
+            "module-misspelt",
+            "A similar module exists: my_robot_controller.helper.",
+        ),
         ("No module named 'geometry_msg.msg'", "module-misspelt", "A similar module exists: geometry_msgs.msg."),
         (
             "No module named 'cv2'",
@@ -65,7 +70,12 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
             "rosidl_runtime_py is a package of ROS 2. This grader does not have rosidl_runtime_py, so it cannot run",
         ),
         ("No module named 'tkinter.mesages'", "module-missing", "No installed package has a module tkinter.mesages."),
-        ("DLL load failed", "crash", "That name cannot be imported from this module."),
+        ("DLL load failed", "crash", "Python could not do this import. The message of the exception gives the reason."),
+        (
+            "attempted relative import with no known parent package",
+            "crash",
+            "A dot at the beginning of a module name stands for the package that contains this file.",
+        ),
     ],
 )
 def test_a_failed_import_is_explained_by_what_there_is(error: str, diagnosis: str, words: str) -> None:
