@@ -34,7 +34,7 @@ class Diagnosis:
     texts: Counter[str] = field(default_factory=Counter)
     entries: list[Entry] = field(default_factory=list)
     changes: list[tuple[Entry, str]] = field(default_factory=list)
-    """The submissions in which a change proved this cause, each with the change as a unified diff."""
+    """The submissions in which a change confirmed this cause, each with the change as a unified diff."""
 
     @property
     def text(self) -> str:

@@ -16,7 +16,7 @@ Schema 4. Every key except `change` is always present. Strings are never null un
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
                   advice: true if a failure costs no points and does not prevent a pass, near_edge,
                   tried: the result of fixing the cause in a copy, or an empty string,
-                  change: that change as a unified diff, only if it has proved the cause}]
+                  change: that change as a unified diff, only if it has confirmed the cause}]
     seconds       {stage: wall time in s}; differs from run to run
     recordings    [paths of the recordings that were kept]
 """

@@ -17,7 +17,7 @@ from grader.tests.case import ROOT
 LINTER = Path(sys.prefix, "bin/lint-imports")
 
 
-def test_every_import_keeps_to_the_order_of_the_rooms() -> None:
+def test_every_import_follows_the_order_of_the_subpackages() -> None:
     done = subprocess.run([LINTER, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
 
@@ -31,12 +31,12 @@ def test_every_import_keeps_to_the_order_of_the_rooms() -> None:
     ],
 )
 def test_an_import_against_the_order_is_found(tmp_path: Path, name: str, text: str) -> None:
-    house = tmp_path / "grader"
+    package = tmp_path / "grader"
     for module in ("checks/__init__", "grading/__init__", "grading/grade", "__init__", "cli"):
-        file = house / f"{module}.py"
+        file = package / f"{module}.py"
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text("", "utf-8")
-    (house / "checks/judge.py").write_text(text, "utf-8")
+    (package / "checks/judge.py").write_text(text, "utf-8")
     sys.path.insert(0, str(tmp_path))
     ours = {key: sys.modules.pop(key) for key in list(sys.modules) if key == "grader"}
     try:
@@ -47,6 +47,6 @@ def test_an_import_against_the_order_is_found(tmp_path: Path, name: str, text: s
     assert graph.find_illegal_dependencies_for_layers(layers=["cli", "grading", "checks"], containers={"grader"}), name
 
 
-def test_nothing_lies_loose_in_the_house() -> None:
+def test_only_three_modules_are_outside_the_subpackages() -> None:
     loose = {file.name for file in (ROOT / "grader").iterdir() if file.is_file()}
     assert loose == {"__init__.py", "cli.py", "errors.py"}

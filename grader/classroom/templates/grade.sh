@@ -9,7 +9,7 @@ set -euo pipefail
 [ $# -ge 4 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 submission=$1 student=$2 exercise=$3 out=$4
 shift 4
-[[ $student =~ ^[A-Za-z0-9][A-Za-z0-9._@+-]*$ ]] || { echo "grade.sh: not a valid folder name: $student" >&2; exit 2; }
+[[ $student =~ ^[A-Za-z0-9][A-Za-z0-9._@+-]*$ ]] || { echo "grade.sh: not a valid student name: $student" >&2; exit 2; }
 [ -e "$submission" ] || { echo "grade.sh: $submission does not exist" >&2; exit 2; }
 
 # A link in a student's repository could lead to the solutions of the course.

@@ -1,4 +1,4 @@
-// The log messages of all nodes, from /rosout, in the format of ros2, but without the time.
+// The last log messages of all nodes, from /rosout, in the format of ros2, but without the time.
 
 import { Tail } from "./tail.js";
 

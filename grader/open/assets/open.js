@@ -44,7 +44,8 @@ function showHints(state) {
   find("hint").disabled = !state.more_hints;
 }
 
-// Show the checks with their lesson. The verdict is always the verdict of the current step.
+// Update the page. The verdict and the hints are those of the current step, even beside the lesson of another step. The
+// checks are only shown with the lesson of the current step.
 function show(state) {
   if (!state.steps) return;
   showSteps(state.steps);
@@ -69,7 +70,8 @@ async function next() {
   else location.href = `/${answer.step}/index.html`;
 }
 
-// The pane that a narrow page shows. A phone shows one pane at a time, and a wide screen shows several panes.
+// Let the buttons choose the visible pane. A wide screen also shows the lesson, and a very wide one
+// shows all panes.
 function addTabs() {
   const buttons = [...document.querySelectorAll("[data-shows]")];
   const choose = (name) => {

@@ -1,5 +1,6 @@
-// The token that this page sends to the server. It is in the address after #, is stored for this tab, and is
-// shared with other tabs of the same address, so that a lesson can be opened in a new tab.
+// The token that this page sends to the server. The address contains the token after #, or a code that the server
+// replaces by the token. The token is stored for this tab, and is shared with other tabs of the same address, so that
+// a lesson can be opened in a new tab.
 
 const NAME = "token";
 const channel = new BroadcastChannel("course-token");
@@ -9,7 +10,7 @@ function fromAddress() {
   const found = /^#([\w-]{22})$/.exec(location.hash);
   // The address of a section also ends with # and a name.
   if (!found || document.getElementById(found[1])) return null;
-  // Remove the token from the address, which the anchors of the lesson use.
+  // Remove the token, because the links to sections of the lesson use the same part of the address.
   history.replaceState(null, "", location.pathname);
   return found[1];
 }

@@ -1,4 +1,4 @@
-// The state of the lesson's step: started or not, graded or not, and the buttons to start it.
+// The state of the lesson's step: new, started, passed or current, and the button that makes it the current step.
 
 import { showText } from "./code_text.js";
 import { addCopyButtons } from "./copy.js";

@@ -1,5 +1,5 @@
 "use strict";
-// Sorts and filters the table. The page is complete without this script.
+// Sorts and filters the table, and opens all sections for printing. The page is complete without this script.
 (function () {
   var table = document.getElementById("table");
   var body = table.tBodies[0];

@@ -51,7 +51,7 @@ function replay(run, view) {
     });
     var text = at.toFixed(2) + " s: ";
     text += known ? "x " + said(run.x[i], "m") + ", y " + said(run.y[i], "m") + ", heading " + said(run.theta[i], "rad")
-      : "the position is not a number";
+      : "the pose is not a number";
     if (commandTimes.length && commandTimes[0] <= at) {
       var command = run.commands[index(commandTimes, at)];
       text += "; last command: linear.x " + said(command[1], "m/s") + ", angular.z " + said(command[2], "rad/s");

@@ -1,4 +1,4 @@
-// The page of a submission: one player for each run, and what is opened for printing.
+// The page of a submission: one player for each run, and the sections that are opened for printing.
 JSON.parse(document.getElementById("data").textContent).forEach(function (run, index) {
   replay(run, document.querySelectorAll(".run")[index]);
 });

@@ -66,9 +66,9 @@ def test_the_script_grades_and_writes_for_github(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("student", ["../up", "-rf", "a b", "", "$(id)"])
-def test_the_script_refuses_names_that_are_not_folder_names(tmp_path: Path, student: str) -> None:
+def test_the_script_refuses_names_that_are_not_valid_student_names(tmp_path: Path, student: str) -> None:
     done = run(SCRIPT, tmp_path, student, STEP, tmp_path / "grades")
-    assert (done.returncode, "not a valid folder name" in done.stderr) == (2, True)
+    assert (done.returncode, "not a valid student name" in done.stderr) == (2, True)
 
 
 def test_the_script_refuses_a_link_that_leads_out_of_the_repository(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_the_change_that_proved_a_cause_is_for_instructors_only(folder: Path) ->
     assert "2.0&gt;" not in html_page(EVIDENCE["failed"], given)
     (folder / "proved.json").write_text(to_json(replace(given, submission="zoe/my_robot_controller")))
     page = class_page(read_class(folder))
-    assert page.count("The change that proved the cause") == 1
+    assert page.count("The change that confirmed the cause") == 1
     assert "msg.linear.x = &lt;2.0&gt;" in page
 
 

@@ -20,8 +20,8 @@ class PoseSubscriberNode(Node):
         # TODO 2: create a timer that calls self.report once a second.
 
     def pose_received(self, pose):
-        # TODO 3: add the step from the last pose to this one to self.distance, and keep this pose in self.pose.
-        # With the first pose there is no step yet.
+        # TODO 3: add the distance between the last pose and this one to self.distance, and keep this pose in
+        # self.pose. For the first pose, there is nothing to add.
         pass
 
     def report(self):

@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 
 class OwnCircleNode(Node):
-    """Publishes the same command again and again, with the student's own radius and rate."""
+    """Publishes one command again and again. The radius, the direction and the rate are the student's own."""
 
     def __init__(self):
         super().__init__("own_circle")

@@ -21,7 +21,7 @@ def main():
     if len(sys.argv) != 2:
         sys.exit("Give the folder of a bag: ros2 run my_robot_controller bag_report circle_bag")
     times, x, y = read_poses(sys.argv[1])
-    # TODO 5: end with a sentence if there are no poses: sys.exit("...").
+    # TODO 5: if there are no poses, exit with a message: sys.exit("...").
     # TODO 6: compute the rate, fit the circle, and print the line that the lesson shows.
 
 

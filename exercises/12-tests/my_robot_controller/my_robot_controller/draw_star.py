@@ -32,7 +32,7 @@ class DrawStarNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
-            return  # the simulator is not running yet
+            return  # no subscriber or no action server yet
         # TODO 10: what happens in each state? "corner": send the goal, once. "turn": nothing at all; a command would
         # abort the goal. "drive": publish the speed TICKS times, then zeros once, then the next corner or the end.
 

@@ -32,8 +32,8 @@ class PoseSubscriberNode(Node):
         self.pose = pose
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 3: add the step from the last pose to this one to self.distance, and keep this pose in self.pose.
-        # # With the first pose there is no step yet.
+        # # TODO 3: add the distance between the last pose and this one to self.distance, and keep this pose in
+        # # self.pose. For the first pose, there is nothing to add.
         # pass
         # END STARTER
 

@@ -41,7 +41,7 @@ def main():
     print(f"messages={len(times)} rate={rate:.2f} x={a:.2f} y={b:.2f} radius={radius:.2f}")
     # END SOLUTION
     # BEGIN STARTER
-    # # TODO 5: end with a sentence if there are no poses: sys.exit("...").
+    # # TODO 5: if there are no poses, exit with a message: sys.exit("...").
     # # TODO 6: compute the rate, fit the circle, and print the line that the lesson shows.
     # END STARTER
 

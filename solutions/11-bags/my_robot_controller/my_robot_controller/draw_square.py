@@ -13,7 +13,7 @@ PERIOD = 0.1  # s
 
 
 class DrawSquareNode(Node):
-    """Drives, turns, drives, turns, ... and stops after four sides."""
+    """Drives a side, turns a corner, and so on, and stops after four of each."""
 
     def __init__(self):
         super().__init__("draw_square")

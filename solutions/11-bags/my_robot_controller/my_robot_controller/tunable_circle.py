@@ -47,7 +47,7 @@ class TunableCircleNode(Node):
         wanted.update({parameter.name: parameter.value for parameter in parameters})
         turn = wanted["speed"] / wanted["radius"]
         if turn > FASTEST_TURN:
-            return SetParametersResult(successful=False, reason=f"{turn:.1f} rad/s is too fast a turn")
+            return SetParametersResult(successful=False, reason=f"turning at {turn:.1f} rad/s is too fast")
         return SetParametersResult(successful=True)
         # END SOLUTION
         # BEGIN STARTER

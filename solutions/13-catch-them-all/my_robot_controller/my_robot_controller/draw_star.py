@@ -38,7 +38,7 @@ class DrawStarNode(Node):
 
     def step(self):
         if self.publisher.get_subscription_count() == 0 or not self.client.server_is_ready():
-            return  # the simulator is not running yet
+            return  # no subscriber or no action server yet
         # BEGIN SOLUTION
         if self.state == "corner":
             self.state = "turn"

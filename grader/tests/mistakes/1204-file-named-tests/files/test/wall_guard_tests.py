@@ -16,7 +16,7 @@ STEP = 100_000_000  # 0.1 s in nanoseconds
 
 
 class Bench:
-    """The node under test, a second node that listens, and a clock that only `run` advances."""
+    """The node under test, a second node that sends poses and listens, and a clock that only `run` advances."""
 
     def __init__(self):
         self.guard = WallGuard()
@@ -32,7 +32,7 @@ class Bench:
         self.run(1)
 
     def spin(self):
-        # Each call runs at most one callback: the guard's timer or the listener's. Six calls are more than enough.
+        # Each call runs at most one callback. Six calls are more than enough.
         for _ in range(6):
             self.executor.spin_once(timeout_sec=0)
 
