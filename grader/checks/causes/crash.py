@@ -36,7 +36,7 @@ RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException
 
 MEANINGS = {
     "AssertionError": "An assertion failed: a condition was false, or a message field got a value of the wrong type.",
-    "AttributeError": "The object has no attribute or method with that name. Check the name letter by letter.",
+    "AttributeError": "The object has no such attribute, or the attribute cannot be assigned. Check the name.",
     "EOFError": "input() waits for the keyboard, but the grader does not type. A node must not ask for input.",
     "ImportError": "Python could not do this import. The message of the exception gives the reason.",
     "IndentationError": "All lines of a block must have the same indentation.",
@@ -45,14 +45,14 @@ MEANINGS = {
     "InvalidQoSProfileException": "A QoSProfile needs a depth, which is the size of the queue.",
     "InvalidTopicNameException": "In a topic name, use only letters, digits, underscores and slashes.",
     "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
-    "KeyError": "The dictionary has no such key.",
+    "KeyError": "The dictionary has no such key, or the set has no such item.",
     "ModuleNotFoundError": "No module with that name is installed. Check the name letter by letter.",
     "NameError": "This name has no value here. Check the spelling of the name, and the imports.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
     "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read or set it.",
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
-    "TypeError": "A function or an operator got a value of the wrong type, or the wrong number of arguments.",
+    "TypeError": "An operation or a function got a value of the wrong type, or the wrong number of arguments.",
     "ValueError": "A value has the right type, but it is not allowed here.",
     "ZeroDivisionError": "A number was divided by zero.",
 }

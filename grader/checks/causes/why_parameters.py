@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash_scene import methods
+from grader.checks.causes.why_other_object import CREATE_OBJECT
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.edit import at
 from grader.common.words import shorten
@@ -46,6 +47,10 @@ def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
         if any(called in node.args for node in scene.on_line if isinstance(node, ast.Call)):
             text = f"With () after its name, {function} is called immediately. To pass the method itself, omit the ()."
             return Cause("callback-called", text, scene.at(called))
+        owner = (dotted(called.func) or "").rpartition(".")[0]
+        if names.strip("'") == "self" and scene.class_named(owner) is not None:
+            text = f"This line calls {function} on the class {owner}, not on an object. {CREATE_OBJECT}"
+            return Cause("class-for-object", text, scene.at(called))
         used = {node.id for node in ast.walk(own[0]) if isinstance(node, ast.Name)}
         if not used & set(re.findall(r"'(\w+)'", names)):
             what, them = ("parameters", "them") if " and " in names else ("parameter", "it")
@@ -95,7 +100,8 @@ def too_many(scene: CrashScene, function: str) -> Cause | None:
         fix = at(place, f"{function}(", f"{function}(self{', ' if first else ''}")
         text = f"{function} is a method, so its first parameter must be self."
         return Cause("self-parameter", text, place).fixed_by(fix)
-    passed = _passed(scene, function) if not scene.calls_on_line(function) else ""
+    by_others = function != "__init__" and not scene.calls_on_line(function)
+    passed = _passed(scene, function) if by_others else ""
     text = f"{function} is called with an argument but has no parameter for it. {passed}".rstrip()
     return Cause("callback-parameters", text, place).fixed_by(at(place, "(self)", "(self, _)"))
 

@@ -80,7 +80,7 @@ def test_an_exception_is_reported_with_its_words_if_it_has_any() -> None:
         (Crash("AssertionError", "it is so"), "An assertion failed: a condition was false, or a message field"),
         (
             Crash("TypeError", "The 'x' field must be of type 'float'"),
-            "A function or an operator got a value of the wrong type",
+            "An operation or a function got a value of the wrong type",
         ),
     ],
 )

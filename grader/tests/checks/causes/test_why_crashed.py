@@ -55,7 +55,7 @@ def test_each_rule_for_topic_names_is_told_alone(message: str, rule: str) -> Non
         ("NameError: free variable 'y' referenced", "This name has no value here. Check the spelling"),
         ("TabError: inconsistent use", "The indentation mixes tabs and spaces."),
         ("IndentationError: unexpected indent", "All lines of a block must have the same indentation."),
-        ("KeyError: 'speed'", "The dictionary has no such key."),
+        ("KeyError: 'speed'", "The dictionary has no such key, or the set has no such item."),
     ],
 )
 def test_an_exception_without_a_known_cause_is_explained_by_its_class(error: str, words: str) -> None:

@@ -55,3 +55,18 @@ def test_an_object_without_its_arguments_is_reported_where_it_is_created(line: s
     given = reported(source, "TypeError: Driver.__init__() missing 1 required positional argument: 'name'")
     assert given.diagnosis == ("argument-missing" if found else "callback-parameters")
     assert (given.cause == "An object of Driver is created here without a value for 'name'.") == found
+
+
+@pytest.mark.parametrize(("line", "found"), [("Driver.changed()", True), ("self.changed()", False)])
+def test_a_method_that_is_called_on_the_class_is_told(line: str, *, found: bool) -> None:
+    error = "TypeError: Driver.changed() missing 1 required positional argument: 'self'"
+    given = reported(SOURCE.format(line=line), error)
+    words = "This line calls changed on the class Driver, not on an object. Add parentheses after the class name to"
+    assert given.cause.startswith(words) == found
+    assert (given.diagnosis == "class-for-object") == found
+
+
+def test_an_object_with_too_many_arguments_has_nothing_to_do_with_timers() -> None:
+    error = "TypeError: Driver.__init__() takes 1 positional argument but 2 were given"
+    given = reported(SOURCE.format(line="Driver('a')"), error)
+    assert given.cause == "__init__ is called with an argument but has no parameter for it."
