@@ -137,7 +137,8 @@ def _scenario(table: Table, node: str) -> Scenario:
 
 
 def _start_limits(table: Table) -> StartLimits:
-    limits = StartLimits(table.limits("x_m", FIELD_M), table.limits("y_m", FIELD_M), table.limits("theta_rad", math.pi))
+    x_m, y_m = (table.limits(key, 0.0, FIELD_M) for key in ("x_m", "y_m"))
+    limits = StartLimits(x_m, y_m, table.limits("theta_rad", -math.pi, math.pi))
     table.finish()
     return limits
 
@@ -145,8 +146,8 @@ def _start_limits(table: Table) -> StartLimits:
 def _drive(table: Table) -> Drive:
     drive = Drive(
         table.number("from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
-        table.limits("linear_x_m_s", MAX_SPEED),
-        table.limits("angular_z_rad_s", MAX_SPEED),
+        table.limits("linear_x_m_s", -MAX_SPEED, MAX_SPEED),
+        table.limits("angular_z_rad_s", -MAX_SPEED, MAX_SPEED),
     )
     table.finish()
     return drive

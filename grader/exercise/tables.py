@@ -98,18 +98,18 @@ class Table:
 
         return int(self._get(key, f"a whole number from {low} to {high}", good, default=default) or 0)
 
-    def limits(self, key: str, most: float) -> tuple[float, float]:
-        """Return two finite numbers from -most to most, in ascending order.
+    def limits(self, key: str, least: float, most: float) -> tuple[float, float]:
+        """Return two finite numbers from `least` to `most`, in ascending order.
 
         A single number in the file counts as both limits.
         """
 
         def good(value: object) -> bool:
             pair = value if isinstance(value, list) else [value, value]
-            numbers = [n for n in pair if isinstance(n, int | float) and not isinstance(n, bool) and abs(n) <= most]
+            numbers = [n for n in pair if isinstance(n, int | float) and not isinstance(n, bool) and least <= n <= most]
             return len(pair) == len(numbers) == 2 and numbers[0] <= numbers[1]
 
-        allowed = f"a number from {-most:g} to {most:g}, or a list of two such numbers in ascending order"
+        allowed = f"a number from {least:g} to {most:g}, or a list of two such numbers in ascending order"
         value = self._get(key, allowed, good, default=None)
         low, high = value if isinstance(value, list) else (value or 0.0, value or 0.0)
         return float(low), float(high)

@@ -6,6 +6,7 @@ import math
 import random
 from typing import TYPE_CHECKING
 
+from grader.errors import MachineError
 from grader.trial.recording import Pose
 from grader.turtlesim.turtle import SIDE_M, Start
 
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 
 MARGIN_M = 0.5
 """The minimum distance between the ideal path and a wall (m)."""
+MOST_RADIUS_M = 2.8
+"""The largest circle (m) for which a random start pose is drawn. With 2.96 m, the circles on both sides only just fit
+between two opposite corners of the field, so almost every pose that is drawn has no room for them."""
 
 
 def start_pose(seed: int | None, radius_m: float) -> Pose:
@@ -21,9 +25,19 @@ def start_pose(seed: int | None, radius_m: float) -> Pose:
 
     `radius_m` is the radius of the ideal circle. There is room on both sides, so that a turtle that turns in the wrong
     direction does not also hit a wall.
+
+    Raises:
+        MachineError: the exercise has a circle with a radius of more than MOST_RADIUS_M, and there is a seed.
     """
     if seed is None:
         return Pose(*Start())
+    if radius_m > MOST_RADIUS_M:
+        message = (
+            f"A random start pose has no room for a circle with a radius of {radius_m:g} m on both sides (at most "
+            f"{MOST_RADIUS_M:g} m fit). Grade without --seed, and give the start pose in exercise.toml, in "
+            "[trial.start_pose]."
+        )
+        raise MachineError(message)
     draw = random.Random(seed)
     low, high = MARGIN_M + radius_m, SIDE_M - MARGIN_M - radius_m
     while True:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 AT_ONCE_S = 0.05
 """A call counts as earlier than a response only if it is earlier by more than this time (s), because times that are
 measured in wall time are not exact."""
-OF_TURTLES = "/turtle"
-"""The beginning of the names of services that each turtle has, such as /turtle1/set_pen."""
+OF_TURTLES = re.compile(r"/turtle\d")
+"""Matches the names of services that each turtle has, such as /turtle1/set_pen, but not /turtlesim/get_parameters."""
 CLOSE = 1e-3
 """The maximum error of a number in a request or a response. Many fields are float32."""
 
@@ -84,7 +85,7 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
     observed = f"The node never called {params.service}."
     if others:
         observed = f"The node called {shorten(others[0].service)} instead of {params.service}."
-        text = "Each turtle has its own services." if params.service.startswith(OF_TURTLES) else ""
+        text = "Each turtle has its own services." if OF_TURTLES.match(params.service) else ""
         return failed(observed, expected, Cause("service-name", text, evidence.place("create_client")))
     return failed(observed, expected, why_unasked(evidence, params.service))
 

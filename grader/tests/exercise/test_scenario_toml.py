@@ -87,6 +87,8 @@ def test_a_trial_may_limit_its_start_pose_and_withdraw_a_target() -> None:
     [
         ({"targets": 2, "withdraws": True}, "withdraws"),
         ({"start_pose": {"x_m": 1.0, "y_m": 2.0}}, "theta_rad"),
+        ({"start_pose": {"x_m": -1.0, "y_m": 2.0, "theta_rad": -1.0}}, "x_m"),
+        ({"start_pose": {"x_m": 1.0, "y_m": [-0.1, 2.0], "theta_rad": 0.0}}, "y_m"),
         ({"call": [{**CALL, "service": "pause"}]}, "service"),
         ({"call": [{**CALL, "type": "std_srvs/SetBool"}]}, "type"),
         ({"call": [{**CALL, "at_s": -1.0}]}, "at_s"),

@@ -110,6 +110,8 @@ def test_only_the_services_of_a_turtle_belong_to_a_turtle() -> None:
     assert "The node called /turtle2/set_pen instead of /turtle1/set_pen." in of_another
     assert "Each turtle has its own services." in of_another
     assert "Each turtle has its own services." not in about_calls(asked(1.0, "/other/spawn"))
+    parameters = about_calls(asked(1.0, "/other/get_parameters"), service="/turtlesim/get_parameters")
+    assert "Each turtle has its own services." not in parameters
 
 
 ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.2, stop_s=None)
