@@ -5,7 +5,7 @@ Each attack is a folder:
     grader/tests/hostile/NNN-name/
       files/           added to the solution of a step (`base`), or replacing its files; for a few lines, use `edit`
       make.py          make(package): creates files that git cannot store
-      expected.toml    the keys are the fields of `Attack`, below
+      expected.toml    the keys are the fields of `Attack`, below, except `name`
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Marks for tests that need the course's own ROS 2 or a sourced ROS 2.
 
-All tests run in an environment with the course's own ROS 2 and in an environment with a sourced ROS 2.
+All other tests run both with the course's own ROS 2 and with a sourced ROS 2.
 """
 
 from __future__ import annotations
@@ -48,6 +48,6 @@ of_our_rqt_graph = pytest.mark.skipif(
 def python_path(folder: Path) -> str:
     """Return a PYTHONPATH that starts with `folder`.
 
-    After `folder`, this path contains the modules of a sourced ROS 2.
+    After `folder`, this path contains the modules of a sourced ROS 2, if there is one.
     """
     return os.pathsep.join([str(folder), *filter(None, [SOURCED_ENV.get("PYTHONPATH")])])

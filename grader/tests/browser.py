@@ -1,4 +1,4 @@
-"""Find the system's Chromium for the tests of the pages."""
+"""Find the system's Chromium or Chrome for the tests of the pages."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FLAGS = (
 
 
 def find_browser() -> str | None:
-    """Return the path of Chromium."""
+    """Return the path of Chromium or Chrome, or None."""
     search = os.pathsep.join([os.environ.get("PATH", ""), *SYSTEM_PATH])
     return next(filter(None, (shutil.which(name, path=search) for name in BROWSERS)), None)
 
@@ -39,7 +39,7 @@ def find_browser() -> str | None:
 def browser_or_reason() -> str:
     """Return the path of Chromium. Without Chromium, the test is skipped and the reason is shown.
 
-    In CI, the test fails if Chromium is missing.
+    In CI, the test fails if Chromium is missing, unless TESTS_WITHOUT_BROWSER is set.
     """
     found = find_browser()
     if found is None:

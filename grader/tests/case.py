@@ -5,7 +5,7 @@ Each case is a folder:
     grader/tests/cases/NNN-name/
       files/           copied over the base; without a base, the whole submission
       make.py          make(folder): creates files that git cannot store (links, names that are not UTF-8, ...)
-      expected.toml    the keys are the fields of `Case`, below
+      expected.toml    the keys are the fields of `Case`, below, except `name` and `folder`
 """
 
 from __future__ import annotations

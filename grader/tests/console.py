@@ -1,7 +1,7 @@
 """Run the command blocks of a Markdown text, to test that README and the lessons show the real output.
 
 A line `...` matches any number of lines. The real output can have more lines at the end than the page shows. Numbers
-may differ.
+may differ, except numbers of things, such as points.
 """
 
 from __future__ import annotations

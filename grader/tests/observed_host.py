@@ -1,7 +1,7 @@
 """An observed host: a namespace with its own /tmp, home, processes and network, examined before and after a command.
 
-The effects of a submission stay in this host. In this host, an attack can also run without a sandbox: programs that do
-nothing replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
+The effects of a submission stay in this host. In this host, an attack can also run without a sandbox: programs that
+protect nothing replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
 
 This file also runs inside the host, as a script. Inside the host, the script offers what an attacker would like to
 reach (services, secrets), runs the command, and reports what is left.
@@ -33,7 +33,7 @@ USER = 65531
 """An ordinary user, for tests that root runs."""
 HANG_S = 400.0
 SETTLE_S = 0.5
-"""The maximum time to wait for processes that continue after the grading (s)."""
+"""The time to wait after the command before the processes that are left are listed (s)."""
 
 OF_LTTNG = re.compile(r"shm/lttng-ust-wait-\d+(-\d+)?")
 """Files that every ROS 2 program leaves on a host, because rclpy loads LTTng. The fork servers load rclpy."""
@@ -47,7 +47,7 @@ class Left:
     stdout: str
     stderr: str
     files: frozenset[str]
-    """Files below /tmp, /home and /dev/shm, without the work folder and the files of LTTng."""
+    """New files and folders below /tmp, /home and /dev/shm, without the work folder and the files of LTTng."""
     processes: tuple[str, ...]
     sockets: tuple[str, ...]
     seconds: float
@@ -247,7 +247,7 @@ def _processes() -> list[tuple[int, str]]:
 
 
 def _listening() -> set[str]:
-    """Return the listening sockets, by inode."""
+    """Return the listening sockets, each as its protocol, address and inode."""
     found = set()
     for name, state in (("tcp", "0A"), ("udp", "07")):
         for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]:

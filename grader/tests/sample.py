@@ -27,8 +27,8 @@ MOST_OF_GROUP = 1
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
 """If source code contains one of these words, it probably needs a trial in wall time."""
 WALL_COST = 5
-"""A case that needs wall time is chosen only if it shows more than this many times as many diagnoses as any other
-case."""
+"""The cost of a case that needs wall time. Other cases have the cost 1. The sample prefers cases that show many
+features for their cost."""
 
 
 def sample(cases: Sequence[Case]) -> frozenset[str]:

@@ -17,7 +17,7 @@ class StandIns:
 
     @property
     def path(self) -> str:
-        """Return a PATH with only the fake programs and the real programs that their scripts need."""
+        """Return a PATH with only the fake programs. Their scripts add the folders of the real programs."""
         return str(self.folder)
 
     def add(self, name: str, then: str = "") -> None:

@@ -159,9 +159,9 @@ def node(*changes: tuple[str, str]) -> Submission:
 def every(
     period_s: float, linear: float, angular: float, until_s: float = DURATION_S, first_s: float | None = None
 ) -> list[Timed]:
-    """Return the same command at each multiple of this period, rounded to whole frames.
+    """Return the same command once per period, at times that are rounded to whole frames.
 
-    The first command comes one period after the start.
+    The first command comes at `first_s`, or one period after the start.
     """
     first = period_s if first_s is None else first_s
     count = max(0, int((until_s - 1e-9 - first) / period_s) + 1)
@@ -241,7 +241,7 @@ def legs(*parts: tuple[int, float, float], rest_s: float = DURATION_S) -> list[T
 
 
 def good() -> Recording:
-    """Return the commands of the solution."""
+    """Return a trial in which the commands of the solution arrived."""
     return recording(every(0.5, 2.0, 1.0))
 
 

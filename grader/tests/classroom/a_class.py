@@ -67,7 +67,7 @@ def command(*arguments: object) -> list[str]:
 
 
 def environment(**more: str) -> dict[str, str]:
-    """Return an environment in which the output is the same on every machine."""
+    """Return the environment without the variables of CI systems, which change the output."""
     return {**{name: value for name, value in os.environ.items() if name not in ("CI", "GITHUB_ACTIONS")}, **more}
 
 

@@ -105,7 +105,7 @@ def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
 def run(
     command: Sequence[str], folder: Path, shim: Path, fault: Fault, settings: Mapping[str, str] | None = None
 ) -> Done:
-    """Run a command of the grader. Messages show the command's name without the folder."""
+    """Run a command of the grader with this fault."""
     program = str(Path(sys.prefix, "bin", command[0]))
     env = {**environment(folder, shim, fault), **(settings or {})}
     done = subprocess.run(

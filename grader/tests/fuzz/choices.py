@@ -1,4 +1,4 @@
-"""Decisions derived from bytes: different bytes lead to different decisions."""
+"""Decisions derived from bytes, so that a fuzzer that changes the bytes tries other decisions."""
 
 from __future__ import annotations
 

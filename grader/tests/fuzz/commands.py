@@ -102,7 +102,7 @@ def write(student: str, report: Report, page: str) -> None:
 
 
 def regraded(folder: Path) -> None:
-    """Run `regrade` on the recording in the folder, with all options of `regrade`."""
+    """Run `regrade` on the recording in the folder, with all options except `--exercise`."""
     from typer.testing import CliRunner
 
     from grader.cli import app

@@ -133,7 +133,7 @@ def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> No
 
 
 def with_cell(folder: Path, source: str) -> None:
-    """Insert a cell after the first cell, which loads the extension."""
+    """Insert a cell after the cell that loads the extension."""
     cell: Notebook = {
         "cell_type": "code",
         "id": "mine",

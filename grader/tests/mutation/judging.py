@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.tests.mutation.recordings import Recorded
 
 Lines = dict[tuple["Path", int], set[str]]
-"""Maps a file to its lines, and a line to the names of the cases or tests that run it. Lines are counted from 1."""
+"""Maps (file, line) to the names of the cases or tests that run this line. Lines are counted from 1."""
 
 PACKAGE = "grader.checks"
 SHARED = "grader.checks.outcome"

@@ -23,7 +23,10 @@ START_S = 120.0
 
 @contextmanager
 def serving(folder: Path, home: Path) -> Iterator[str]:
-    """Start JupyterLab for the notebooks in `folder`, with its settings below `home`. Return the address to open."""
+    """Start JupyterLab for the notebooks in `folder`, with its settings below `home`.
+
+    Yield the address of a notebook, with PATH in place of the notebook's path.
+    """
     token = secrets.token_hex(16)
     env = {
         **os.environ,
@@ -68,7 +71,7 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
 
 
 def type_cell(page: Page, begins: str, text: str) -> None:
-    """Type a new text in the cell that starts with `begins`, in place of the old text."""
+    """Type a new text in the first cell that contains `begins`, in place of the old text."""
     cell = page.locator(".jp-CodeCell", has_text=begins).first
     cell.scroll_into_view_if_needed()
     cell.locator(".cm-content").click()

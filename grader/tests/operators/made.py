@@ -71,7 +71,7 @@ def bases(folder: Path) -> list[tuple[str, Package]]:
 
 
 def _read(case: Case, folder: Path) -> tuple[str, Package] | None:
-    """Return the package of a case, or None if the node follows wall time or the package has binary files."""
+    """Return the package of a case, or None if it has no node, a node that might use wall time, or binary files."""
     submission = open_submission(make_submission(case, folder / case.name))
     exercise = find_exercise(case.exercise or case.base)
     evidence = Evidence(exercise, submission)

@@ -99,9 +99,9 @@ def anywhere(make: Make) -> Make:
 
 
 def remove_line(pattern: str, *, file: str = "") -> Make:
-    """Return an operator that removes a line that matches the pattern.
+    """Return an operator that empties a line that matches the pattern.
 
-    A removed statement can be replaced by `pass`.
+    In the node's file, an indented line becomes `pass`.
     """
     is_code = not file
 

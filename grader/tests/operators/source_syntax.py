@@ -22,7 +22,7 @@ def _source(name: str, pattern: str, by: Replacement, *says: Diagnosis, never: s
 
 
 def _method_moved(by: int) -> Make:
-    """Indent a method with its whole body by this many columns."""
+    """Indent a method with its whole body by one level more, or, if `by` is negative, by one level less."""
 
     def make(package: Package, draw: Random) -> Change | None:
         text = package.files[package.source]

@@ -45,7 +45,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def problems() -> list[str]:
-    """Return the problems in the tab: errors, console messages, dialogs, and the URLs that the tab requested."""
+    """Return the problems in the tab: errors, console messages, dialogs, and requested URLs that are not files."""
     return []
 
 

@@ -55,7 +55,7 @@ def hostile() -> Evidence:
 
 
 def enormous() -> Evidence:
-    """Return the hostile evidence with huge amounts of everything. No submission must make a page large."""
+    """Return the hostile evidence with huge amounts of everything. Its page must stay small."""
     given = hostile()
     assert given.run.recording is not None
     worst = '"' * 2000 + "\n"

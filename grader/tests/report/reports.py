@@ -57,7 +57,7 @@ def report_of(given: Evidence, **changes: object) -> Report:
 
 
 def report(status: str, **changes: object) -> Report:
-    """Return a report in which this status occurs. The report contains the checks of the course."""
+    """Return a report in which this status occurs. The report contains the checks of step 03."""
     assert exercise().checks
     return report_of(EVIDENCE[status], **changes)
 

@@ -118,7 +118,7 @@ class Clone:
 
 
 def clone(folder: Path) -> Clone:
-    """Copy the current state of all files that git tracks into a home folder below `folder`.
+    """Copy the current state of all files that git does not ignore into a home folder below `folder`.
 
     The path of the clone has spaces.
     """

@@ -255,10 +255,7 @@ def hooks() -> dict[str, Any]:
 
 
 def late_frames() -> list[float]:
-    """Run in wall time without a client.
-
-    Each frame takes so long to compute that ten frames should have been computed in that time.
-    """
+    """Return the times of the frames of a run in wall time (s). The fifth frame takes as long as ten frames should."""
     times: list[float] = []
     stop = threading.Event()
 

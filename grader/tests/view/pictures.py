@@ -36,7 +36,7 @@ def main() -> int:
 
 
 def take(world: World, browser: str) -> None:
-    """Wait until the turtle has driven most of its circle, and then take the screenshot."""
+    """Wait until the turtle has driven more than one circle, and then take the screenshot."""
     simulator = world.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     url = next(word for line in simulator.lines for word in line.split() if word.startswith("http://"))
     world.start(f"python3 {SOLUTION}/my_robot_controller/draw_circle.py", "Draw")
