@@ -66,7 +66,7 @@ def content_of(found: Found, exercise: Exercise, student: str) -> Content:
 def _handed_in(
     found: Found, exercise: Exercise, student: str, place: AbstractContextManager[Path]
 ) -> Submission | Refused:
-    """Read the submission in a folder."""
+    """Read the submission in the folder that `place` yields, or return the reason why it cannot be read."""
     try:
         with place as folder:
             try:

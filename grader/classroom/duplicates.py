@@ -1,9 +1,9 @@
 """Submissions whose student is not clear: a student has several submissions, or names of students are too similar.
 
-Two names are one student id if they have the same normal form (grader.exercise.own_numbers.normal_id). Both submissions
-are graded, with the same individual numbers, because a student who chooses the name of an archive could otherwise take
-the points of another student. The reports say that the names are one id. Several submissions with exactly the same name
-are not graded, because they have a single line in the table of the class.
+Two names are one student id if they have the same normal form (grader.exercise.own_numbers.normal_id). Each of these
+names has its own result, with the same individual numbers, because a student who chooses the name of an archive could
+otherwise take the points of another student. The reports say that the names are one id. Several submissions with
+exactly the same name are not graded, because they have a single line in the table of the class.
 """
 
 from __future__ import annotations
@@ -34,12 +34,13 @@ def without_duplicates(found: Iterable[Found]) -> Iterator[Found]:
         by_name = alike.setdefault((normal_id(each.student), each.exercise), {})
         by_name.setdefault(each.student, []).append(each)
     for by_name in alike.values():
-        why = similar(sorted(by_name, key=sort_key), "Each of them is graded.").reason if len(by_name) > 1 else ""
+        names = sorted(by_name, key=sort_key)
+        why = similar(names, "Each of them has its own result.").reason if len(names) > 1 else ""
         yield from (replace(_one_of(each), alike=why) for each in by_name.values())
 
 
 def similar(names: Sequence[str], todo: str) -> Refused:
-    """Return a message which says that these names are one student id. `todo` is its last sentence."""
+    """Return a message which says that these names are one student id. `todo` is its end."""
     return Refused(f"{a_list([shown(name) for name in names])} are one student id: {SAME}. {todo}", "similar-names")
 
 

@@ -245,7 +245,8 @@ def misnamed(student: str, path: Path) -> Iterator[Found]:
         exercise = next((each for each in catalogue() if name.startswith(each)), None)
         if exercise is not None and exercise not in present:
             where = f"{shown(student)}/{shown(entry.name)}"
-            reason = f"{where} must be a folder with the name {exercise}. Rename or unpack it."
+            todo = "Replace the symbolic link with the folder." if os.path.islink(entry) else "Rename or unpack it."
+            reason = f"{where} must be a folder with the name {exercise}. {todo}"
             yield Found(student, exercise, entry, Refused(reason, "submission-name"))
 
 

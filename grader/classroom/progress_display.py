@@ -7,6 +7,7 @@ continuous integration (CI) system.
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from contextlib import contextmanager
@@ -43,10 +44,10 @@ class Screen(Protocol):
 def plain(text: str) -> str:
     """Return the text, changed so that it cannot control a terminal or a program that reads logs.
 
-    Control characters become question marks or spaces, and `::` and `##` get a space in the middle.
+    Control characters become question marks or spaces, and a space separates the characters of `::` and `##`.
     """
     # GitHub executes ::command:: at the beginning of a line and ##[command] anywhere, and Azure Pipelines ##vso[.
-    return printable(text).replace("::", ": :").replace("##", "# #")
+    return re.sub("(?<=:)(?=:)|(?<=#)(?=#)", " ", printable(text))
 
 
 def estimate(done: int, of: int, seconds: float) -> str:

@@ -83,7 +83,7 @@ class _StopsWithTheDisk(BaseConverter):  # type: ignore[misc, unused-ignore]
         """Convert all submissions as the base class does.
 
         Raises:
-            NbGraderException: the disk failed. The reason is logged as one sentence.
+            NbGraderException: the disk failed, or some of the submissions could not be converted.
         """
         try:
             super().convert_notebooks()

@@ -1,4 +1,4 @@
-"""`nbgrader export`: export only confirmed scores, and report unconfirmed scores.
+"""`nbgrader export`: export 0 points for each unconfirmed score, and report these scores.
 
 nbgrader's own export writes names without quotes. With a name such as "anna,,,,100,0,100,100", a student could change
 any score in the table.

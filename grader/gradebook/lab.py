@@ -1,4 +1,4 @@
-"""A Jupyter server extension that hides from learners the tools that nbgrader has for instructors.
+"""A Jupyter server extension that hides nbgrader's tools in JupyterLab from learners.
 
 Jupyter finds the extension through jupyter_server.json, which the set-up copies to a folder in etc/jupyter.
 """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from traitlets.config import Config
 
 SHOWN = ["image/png", "image/jpeg", "text/plain"]
-"""The kinds of output that are shown, in order of priority."""
+"""The MIME types that are shown, in order of priority."""
 TAGS = {
     *bleach.sanitizer.ALLOWED_TAGS,
     *("br", "code", "del", "div", "h1", "h2", "h3", "h4", "h5", "h6", "hr", "p", "pre", "span", "sub", "sup"),
@@ -45,7 +45,7 @@ def safe_html(markdown: str) -> str:
 
 
 def safe_metadata(output: Any, key: str, mimetype: str | None = None) -> float | None:  # noqa: ANN401 - nbformat's output
-    """Return the width or height of a picture if it is a number, and None for all other values.
+    """Return a value from the metadata of a picture, such as its width, if it is a number, or else None.
 
     nbconvert's templates insert these values without quotes, so a string could add attributes to the element.
     """

@@ -1,7 +1,7 @@
 """Read the parts of a submission that nbgrader needs, in the reading process (submission/reader.py).
 
-nbgrader follows links, copies files of any size, and parses any notebook in its own process. The grader's steps pass
-nbgrader only the results of the functions in this module: a notebook of limited size and depth, and a valid time.
+nbgrader follows links, copies files of any size, and parses any notebook in its own process. Therefore, the grader's
+steps first call the functions in this module, which check the time, the secret and the size and depth of a notebook.
 """
 
 from __future__ import annotations

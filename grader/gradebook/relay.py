@@ -40,7 +40,7 @@ ORDER_FILE, WHY_FILE = "order.json", "why"
 MOST_MEMORY = 1024 * MIB
 """The limit on the relay's address space (bytes)."""
 MOST_WAITING = MIB
-"""While at least this number of bytes is pending for the kernel, the relay does not read from nbgrader."""
+"""While at least this number of bytes is pending for the kernel, the relay reads no further messages for the kernel."""
 LINGER_MS = 1000
 _IOPUB = CHANNELS.index("iopub")
 
@@ -154,7 +154,10 @@ class Relay:
 
 
 def run(order: Order, info: Mapping[str, Any]) -> str:
-    """Run the cell until it exits. Return the reason why the cell was stopped, or an empty string."""
+    """Run the cell until it or nbgrader exits, or until a limit is exceeded.
+
+    Return the limit or the fault of the kernel because of which the cell was stopped, or an empty string.
+    """
     limits = Limits()
     over: list[str] = []
     with ExitStack() as stack:

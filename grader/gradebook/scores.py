@@ -59,7 +59,7 @@ class Synced:
     maxima: tuple[str, ...]
     """The cells whose maximum points have changed in the gradebook, each with the old and the new points."""
     unconfirmed: tuple[Unconfirmed, ...]
-    """The cells without a confirmed score, and the submissions that could not be read or whose scores could not be
+    """The cells without a confirmed score, and the submissions that were not graded or whose scores could not be
     written."""
 
 

@@ -75,7 +75,8 @@ class Checking:
             check("03-circle-publisher").points("circle")
 
         Raises:
-            UsageError: the step does not exist, no package or answers were found, or the grader reported an error.
+            UsageError: the step does not exist or is not set, no package or answers were found, or the grader reported
+                an error.
             MachineError: the grader ended without a verdict and without an error message.
         """
         from grader.notebook.grading_process import opened

@@ -48,7 +48,8 @@ class Unpacker:
         """Add bytes, and yield each complete message with its channel.
 
         Raises:
-            FrameError: the channel does not exist, or the message is too large. After this, no message can be read.
+            FrameError: the channel does not exist, or the message is too large or has too many parts. After this, no
+                message can be read.
         """
         self._data += data
         while (sizes := self._sizes()) is not None:

@@ -203,10 +203,13 @@ def test_what_nbgrader_does_not_see_is_listed(tmp_path: Path) -> None:
     (tmp_path / "jon").mkdir()
     (tmp_path / "jon" / "03-circle-publisher.zip").write_bytes(b"")
     (tmp_path / "link").symlink_to("anna")
+    (tmp_path / "kim").mkdir()
+    (tmp_path / "kim" / "03-circle-publisher").symlink_to(tmp_path / "anna" / "03-circle-publisher")
     (tmp_path / ".gitkeep").write_bytes(b"")
     listed = {each.student: each.refused.reason for each in left_out(tmp_path, ["homework"]) if each.refused}
-    assert listed.keys() == {"erik", "fay o", "gina", "ines", "jon", "link"}
+    assert listed.keys() == {"erik", "fay o", "gina", "ines", "jon", "kim", "link"}
     assert "must be a folder with the name 03-circle-publisher" in listed["erik"]
     assert "must be unpacked" in listed["fay o"]
     assert "must be a folder with the name 03-circle-publisher" in listed["jon"]
+    assert "Replace the symbolic link" in listed["kim"]
     assert "symbolic link" in listed["link"]

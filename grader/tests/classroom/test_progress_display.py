@@ -45,7 +45,7 @@ def test_the_estimate_uses_the_average_speed(done: int, of: int, seconds: float,
     assert estimate(done, of, seconds) == expected
 
 
-@pytest.mark.parametrize("text", ["::error::x", "##[error]x", "##vso[task.x]", ODD, "\n::set-output name=a::b"])
+@pytest.mark.parametrize("text", ["::error::x", "##[error]x", "###vso[task.x]:::x", ODD, "\n::set-output name=a::b"])
 def test_printed_text_controls_neither_terminal_nor_ci(text: str) -> None:
     shown = plain(text)
     assert shown.isprintable()
