@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import json
 import subprocess
 import sys
@@ -209,6 +210,7 @@ def test_grading_for_marks_refuses_without_a_sandbox(monkeypatch: pytest.MonkeyP
 def test_grader_check_without_a_sandbox_names_only_its_own_option(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bubblewrap, "program", lambda: None)
     monkeypatch.setattr(cli, "_opened", lambda *_: (None, None))
+    monkeypatch.setattr(gc, "disable", lambda: None)  # the other tests of this process need garbage collection
     with pytest.raises(MachineError) as raised:
         cli.check(confined=True)
     assert "Without --sandbox, this code runs with limits on time" in str(raised.value)
