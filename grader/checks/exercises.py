@@ -78,12 +78,12 @@ def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
     """Return the exercise that the file `path` defines. If `path` is a folder, its file exercise.toml is read.
 
     If `outline` is True, the parameters of the checks are not read. The module of
-    a kind is then imported only for a check without a title. For step 03, loading takes 2 ms instead of 28 ms.
+    a kind is then imported only for a check without a title, so loading step 03 is more than ten times as fast.
 
     Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
     allowed values. Raises OSError if the machine is at fault, for example because of a read error.
     """
-    from grader.checks.kinds import KINDS, OUTLINES  # imported here because few commands need it
+    from grader.checks.kinds import KINDS, OUTLINES  # imported here: a list of exercises does not need it
 
     file = path / FILE_NAME if path.is_dir() else path
     try:

@@ -190,8 +190,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
 def unreadable(how: str) -> Finding:
     """Return a failed finding about a submission that the grader cannot read.
 
-    The status of this finding is not `error`: a check reads only data from the submission, so the submission is the
-    cause of an exception in the check.
+    The status of this finding is not `error`: a check reads only data from the submission, so the submission is
+    considered the cause of an exception in the check.
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."

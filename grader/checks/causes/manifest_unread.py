@@ -26,7 +26,7 @@ MISTAKES = (
     ("undefined entity", r"", AMPERSAND),
     ("duplicate attribute", r"", "An attribute may occur only once in a tag."),
     ("unclosed", r"", "A tag or a comment begins on this line, but does not end: > or --> is missing."),
-    ("no element|syntax error", r"", "The first thing in an XML file is a tag, such as <package>."),
+    ("no element|syntax error", r"", "An XML file begins with <?xml or with a tag, such as <package>."),
     ("", r"&(?!#?\w+;)", AMPERSAND),
     (
         "",

@@ -144,7 +144,7 @@ def _is_square(side: ast.expr, module: Module, reach_m: float) -> bool:
 
 
 def _is_condition_of_call(module: Module, test: ast.Compare) -> bool:
-    """Return whether this is the condition of an if statement whose first statement calls a function that catches."""
+    """Return whether this is the condition of an if statement whose first statement calls catch or its client."""
     for node in module.nodes:
         if isinstance(node, ast.If) and node.test is test:
             first = node.body[0]

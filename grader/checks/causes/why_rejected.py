@@ -30,7 +30,7 @@ OUTSIDE = re.compile(
 OF_THE_NODE = re.compile(r"cannot import name '(?P<name>[A-Z][A-Z0-9_]*)' from '[\w.]*\bwall_guard'")
 """Matches pytest's message about a constant that cannot be imported from the module of the node."""
 STYLE = re.compile(r"No module named '(?P<name>ament_(?:copyright|flake8|pep257|mypy|xmllint))")
-"""Matches the message about a missing package that checks code style. Test files of `ros2 pkg create` import it."""
+"""Matches the message about a missing package that checks code style. Test files of `ros2 pkg create` import three."""
 IDENTITY = re.compile(r"(?:E\s+)?(?:AssertionError: )?assert (?P<left>\S+) is (?!not\b)(?P<right>\S+)")
 """Matches pytest's message about an assert with `is`."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)

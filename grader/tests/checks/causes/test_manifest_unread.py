@@ -101,7 +101,7 @@ def test_a_repeated_depend_is_enough_once() -> None:
             {"package.xml": "name: my_robot_controller\n"},
             "xml-malformed",
             "package.xml:1",
-            "The first thing in an XML file is a tag, such as <package>.",
+            "An XML file begins with <?xml or with a tag, such as <package>.",
         ),
         (
             xml("</package>", ""),
