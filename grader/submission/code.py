@@ -261,7 +261,7 @@ def read_module(file: str, data: bytes) -> Module:
             )  # a warning about an escape sequence in the student's code must not appear in our output
             return Module(file, ast.parse(data, filename=file))
     except SyntaxError as error:
-        return Module(file, unreadable=Unreadable(error.msg, error.lineno))
+        return Module(file, unreadable=Unreadable(error.msg, error.lineno or None))
     except ValueError as error:  # before Python 3.12, null bytes raise ValueError
         return Module(file, unreadable=Unreadable(str(error)))
     except (RecursionError, MemoryError) as error:

@@ -31,6 +31,11 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
         "syntax-error",
         "In a string, a backslash begins an escape sequence. Write \\\\ for a backslash, or r before the string.",
     ),
+    (
+        r"unknown encoding|encoding problem",
+        "not-utf8",
+        "The comment with the word coding names an unknown encoding. Remove the comment, and save the file as UTF-8.",
+    ),
     (NOT_UTF8, "not-utf8", "Save the file as UTF-8."),
     (
         "inconsistent use of tabs",

@@ -203,3 +203,19 @@ def test_a_sign_is_blamed_if_python_can_read_the_line_without_it(line: str, word
         words is not None
     )
     assert words is None or (words in found.cause and found.fix)
+
+
+@pytest.mark.parametrize(("first", "line"), [(b"# coding: raven\n", None), (b"x = 'a\n", 1)])
+def test_a_message_about_the_whole_file_has_no_line(first: bytes, line: int | None) -> None:
+    unreadable = read_module("a.py", first + b"y = 1\n").unreadable
+    assert unreadable is not None
+    assert unreadable.line == line  # Python reports line 0 for an unknown encoding
+
+
+@pytest.mark.parametrize(("data", "found"), [(b"# coding: raven\n", True), (b"x = '\xe9'\n", False)])
+def test_a_comment_with_an_unknown_encoding_is_named(data: bytes, *, found: bool) -> None:
+    unreadable = read_module("a.py", data).unreadable
+    assert unreadable is not None
+    given = unreadable_finding("a.py", unreadable, data)
+    assert given.diagnosis == "not-utf8"
+    assert given.cause.startswith("The comment with the word coding names an unknown encoding.") == found
