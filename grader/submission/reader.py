@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
 from grader.common.lazy import IMPORTING
+from grader.common.linux_calls import limited_cpu_s
 from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
 from grader.sandbox.landlock import allow_only_reading
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 T = TypeVar("T")
-
 CPU_S = 10
 TIMEOUT_S = 120.0
 MEMORY = 1024 * 1024 * 1024
@@ -131,15 +131,18 @@ def _fork() -> int:
         with IMPORTING:
             return os.fork()
     except OSError as error:
-        message = refusal(error) or str(error)
-        raise MachineError(message) from error
+        raise MachineError(refusal(error) or str(error)) from error
 
 
 def _ended(child: int) -> int:
+    """Return the exit status of the child. If the child ignored SIGXCPU and was killed later, it is SIGXCPU, too."""
     try:
-        return os.waitpid(child, 0)[1]
+        os.waitid(os.P_PID, child, os.WEXITED | os.WNOWAIT)
+        is_late = limited_cpu_s(child) >= CPU_S
+        status = os.waitpid(child, 0)[1]
     except ChildProcessError:
         return 0  # SIGCHLD is ignored, as in our parent process, so the exit status is unknown
+    return int(signal.SIGXCPU) if is_late and os.WTERMSIG(status) == signal.SIGKILL else status
 
 
 def _run(sends: int, readable: tuple[Path, ...], function: Callable[[], object]) -> NoReturn:
@@ -197,7 +200,8 @@ def _limit() -> None:
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, NO_CORE_DUMP),
     ):
-        resource.setrlimit(which, (allowed(which, most), resource.getrlimit(which)[1]))
+        # A second after SIGXCPU, at the hard limit, the kernel sends SIGKILL.
+        resource.setrlimit(which, (allowed(which, most), allowed(which, most + 1)))
 
 
 def _answer(function: Callable[[], object]) -> bytes:
@@ -230,11 +234,7 @@ def _packed(*, fine: bool, value: object) -> bytes:
 
 
 def _received(pipe: int) -> bytes | None:
-    """Return everything that the child process sends, or None after the timeout.
-
-    Raises:
-        TooLargeError: the data is too large.
-    """
+    """Return everything that the child process sends, or None after the timeout. Raises TooLargeError if too large."""
     poll = select.poll()
     poll.register(pipe, select.POLLIN)
     until = time.monotonic() + TIMEOUT_S

@@ -74,7 +74,7 @@ def _called(order: dict[str, Any], call: dict[str, Any]) -> dict[str, Any]:
         child = os.fork()
         if child == 0:
             _child(order, call, (out.fileno(), err.fileno(), returned.fileno()))
-        ended = _ended(child)
+        ended = _ended(child, _cpu_limits(order)[0])
         _end_processes(child)
         values, kind = _returned(_text(returned.fileno()))
         return {
@@ -103,19 +103,36 @@ def _returned(text: str) -> tuple[list[float] | None, str]:
     return values, kind
 
 
-def _ended(child: int) -> str:
+def _cpu_limits(order: dict[str, Any]) -> tuple[int, int]:
+    """Return the soft and the hard limit on the CPU time of one call (s)."""
+    cpu_s = FUNCTION_CPU_S if order["function"] else PROGRAM_CPU_S
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    most_s = cpu_s + 1 if hard == resource.RLIM_INFINITY else min(cpu_s + 1, hard)
+    return min(cpu_s, most_s), most_s
+
+
+def _ended(child: int, most_cpu_s: int) -> str:
+    """Wait until the call has ended, and return how it ended.
+
+    A call can ignore SIGXCPU, or end normally when this signal arrives. Therefore, its CPU time counts, too.
+    """
     until = time.monotonic() + CALL_S
     while time.monotonic() < until:
-        done, status = os.waitpid(child, os.WNOHANG)
-        if done:
-            code = os.waitstatus_to_exitcode(status)
-            if code == -signal.SIGXCPU:
+        if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None:
+            is_late = _cpu_s(child) >= most_cpu_s
+            code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+            if is_late or code == -signal.SIGXCPU:
                 return TOO_LATE
             return f"exit {code}" if code >= 0 else f"signal {-code}"
         time.sleep(POLL_S)
     os.kill(child, signal.SIGKILL)  # the child may have left its process group
     os.waitpid(child, 0)
     return TOO_LATE
+
+
+def _cpu_s(process: int) -> float:
+    """Return the CPU time of a process (s) that the kernel compares with RLIMIT_CPU. See grader.common.linux_calls."""
+    return time.clock_gettime(~process << 3)
 
 
 def _end_processes(child: int) -> None:
@@ -133,10 +150,7 @@ def _end_processes(child: int) -> None:
 def _child(order: dict[str, Any], call: dict[str, Any], files: tuple[int, int, int]) -> None:
     os.setpgid(0, 0)
     ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)  # so that a program can open /dev/stdin and /dev/stdout
-    cpu_s = FUNCTION_CPU_S if order["function"] else PROGRAM_CPU_S
-    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
-    most_s = cpu_s + 1 if hard == resource.RLIM_INFINITY else min(cpu_s + 1, hard)
-    resource.setrlimit(resource.RLIMIT_CPU, (min(cpu_s, most_s), most_s))
+    resource.setrlimit(resource.RLIMIT_CPU, _cpu_limits(order))
     os.dup2(files[0], 1)
     os.dup2(files[1], 2)
     sys.path[:0] = order["python_path"]

@@ -6,6 +6,7 @@ import ast
 import fcntl
 import importlib
 import os
+import resource
 import select
 import signal
 import subprocess
@@ -103,3 +104,15 @@ def test_no_other_module_needs_a_name_that_such_a_python_lacks() -> None:
         "grader/common/linux_calls.py": {"os.pidfd_open", "signal.pidfd_send_signal"}
     }
     assert hasattr(fcntl, "F_OFD_SETLK")
+
+
+def test_the_cpu_time_that_the_kernel_limits_is_known_exactly_even_after_the_process_has_ended() -> None:
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (1, 2))
+
+    with subprocess.Popen([sys.executable, "-c", "while True: pass"], preexec_fn=limit) as process:
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+        assert 1.0 <= linux_calls.limited_cpu_s(process.pid) < 2.0
+    assert process.returncode == -signal.SIGXCPU
+    with pytest.raises(OSError, match="Invalid argument"):
+        linux_calls.limited_cpu_s(process.pid)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -17,6 +18,14 @@ from grader.tests.case import ROOT
 def test_limits_alone_need_no_bubblewrap() -> None:
     done = subprocess.run(limited(["true"], Limits()), check=False)
     assert done.returncode == 0
+
+
+def test_a_program_cannot_ignore_its_limit_on_cpu_time() -> None:
+    """The soft limit is also the hard limit, at which the kernel sends SIGKILL instead of SIGXCPU."""
+    ignores = "import signal\nsignal.signal(signal.SIGXCPU, signal.SIG_IGN)\nwhile True: pass"
+    for code in (ignores, "while True: pass"):
+        done = subprocess.run(limited([sys.executable, "-c", code], Limits(cpu_s=1)), check=False, timeout=60.0)
+        assert done.returncode == -signal.SIGKILL, code
 
 
 def test_limits_never_exceed_those_of_the_user() -> None:

@@ -7,6 +7,7 @@ import ctypes
 import mmap
 import os
 import resource
+import signal
 import subprocess
 import sys
 import threading
@@ -139,14 +140,20 @@ def test_a_child_that_ends_without_an_answer_is_started_once_more(
     assert read(ends_once) == 2
 
 
-def test_a_child_that_computes_for_too_long_is_not_started_again(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("action", [signal.SIG_DFL, signal.SIG_IGN])
+def test_a_child_that_computes_for_too_long_is_not_started_again(
+    action: signal.Handlers, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """SIGXCPU can be ignored from the start: a process inherits this from its parent."""
     calls = mmap.mmap(-1, 1)  # shared with the children
 
     def counts() -> None:
         calls[0] += 1
+        signal.signal(signal.SIGXCPU, action)
         spins()
 
     monkeypatch.setattr(reader, "CPU_S", 1)
+    monkeypatch.setattr(reader, "TIMEOUT_S", 20.0)
     with pytest.raises(TooLargeError):
         read(counts)
     assert calls[0] == 1

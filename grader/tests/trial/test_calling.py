@@ -76,20 +76,55 @@ def test_each_call_has_a_process_of_its_own(ros: Ros) -> None:
     assert [each.values for each in called(ros, source)] == [(1.0,), (1.0,)]
 
 
-def test_a_call_that_does_not_end_is_stopped_and_the_others_are_not_made(
-    ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def limit_calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, call_s: float) -> None:
+    """Limit each call to 1 s of CPU time and to this wall time (s)."""
     script = tmp_path / "cell_calls.py"
     script.write_text(
         calling._SCRIPT.read_text("utf-8")
         .replace("FUNCTION_CPU_S = 2", "FUNCTION_CPU_S = 1")
-        .replace("CALL_S = 20.0", "CALL_S = 3.0"),
+        .replace("CALL_S = 20.0", f"CALL_S = {call_s}"),
         "utf-8",
     )
     monkeypatch.setattr(calling, "_SCRIPT", script)
+
+
+def test_a_call_that_does_not_end_is_stopped_and_the_others_are_not_made(
+    ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    limit_calls(monkeypatch, tmp_path, 3.0)
     for body in ("while True: pass", "import time; time.sleep(1000)"):
         first, second = called(ros, f"def f(x, y):\n    {body}\n")
         assert (first.ended, second.ended) == (TOO_LATE, ""), body
+
+
+@pytest.mark.parametrize("action", ["signal.SIG_IGN", "lambda *_: os._exit(0)"], ids=["ignored", "handled"])
+def test_a_call_cannot_hide_that_it_exceeded_its_cpu_time(
+    ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, action: str
+) -> None:
+    limit_calls(monkeypatch, tmp_path, 60.0)
+    body = f"signal.signal(signal.SIGXCPU, {action})\n    while True: pass"
+    first, second = called(ros, f"import os, signal\n\ndef f(x, y):\n    {body}\n")
+    assert (first.ended, second.ended) == (TOO_LATE, "")
+
+
+def test_the_cpu_time_of_the_processes_that_a_call_has_started_does_not_count(
+    ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The kernel limits the CPU time of each process."""
+    limit_calls(monkeypatch, tmp_path, 60.0)
+    source = """
+import os, time
+
+def f(x, y):
+    for _ in range(2):
+        if os.fork() == 0:
+            while time.process_time() < 0.7:
+                pass
+            os._exit(0)
+        os.wait()
+    return (1.0,)
+"""
+    assert [each.values for each in called(ros, source)] == [(1.0,), (1.0,)]
 
 
 @pytest.mark.parametrize(
