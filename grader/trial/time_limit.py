@@ -20,7 +20,10 @@ are running."""
 
 
 class TimeLimit:
-    """Kills the processes of a trial when they take too long. `starved` is then true if the machine was too busy."""
+    """Kills the processes of a trial when they take too long.
+
+    `reached` is then true, and `starved` is true if the machine was too busy.
+    """
 
     def __init__(self, conductor: ConductorProcess) -> None:
         self._conductor = conductor
@@ -29,6 +32,7 @@ class TimeLimit:
         self._worked_before_s = self._begun_s = 0.0
         self._changing = Lock()
         self._closed = False
+        self.reached = False
         self.starved = False
 
     def start(self, seconds: float) -> None:
@@ -63,6 +67,7 @@ class TimeLimit:
             worked_s = self._worked_s() - self._worked_before_s
             passed_s = time.monotonic() - self._begun_s
             others_s = self._others.worked_s(but_s=worked_s)
+            self.reached = True
             self.starved = others_s >= MOST_BY_OTHERS * len(os.sched_getaffinity(0)) * passed_s
             self._conductor.kill()
 

@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from grader.common.how_ended import how_ended
 from grader.common.system_errors import refusal_in
 from grader.errors import MachineError
 from grader.ros import installation
@@ -144,7 +145,7 @@ class Trial:
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
             OverwhelmedError: the node overloaded the trial so much that it could not be completed.
-            MachineError: the simulator or the sandbox failed, or the machine was too busy.
+            MachineError: the simulator or the sandbox failed, or the machine was too busy or out of memory.
         """
         arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
         inputs = self._plan.inputs
@@ -243,9 +244,13 @@ class Trial:
             if "fault" in answer:
                 raise OverwhelmedError(answer["fault"])
             raise self._how_it_ended()
+        ended = None if answer else self._how_it_ended()
         self._conductor.kill()
         self._errors.seek(0)
-        raise _fault(answer.get("fault") or last_words(self._errors.read()[-2000:]))
+        output = answer.get("fault") or last_words(self._errors.read()[-2000:])
+        if isinstance(ended, MachineError) and (self._time_limit.starved or not output):
+            raise ended
+        raise _fault(output or str(ended or ""))
 
     def _how_it_ended(self) -> OverwhelmedError | MachineError:
         try:
@@ -255,9 +260,24 @@ class Trial:
         if self._time_limit.starved:
             message = "The machine was too busy to finish the trial in time. Try again when the machine is less busy."
             return MachineError(message)
-        if code == -signal.SIGKILL:
+        if code != -signal.SIGKILL:
+            return OverwhelmedError(f"it {how_ended(code)}")
+        if self._time_limit.reached:
             return OverwhelmedError("it was still busy long after the trial should have ended", hung=True)
-        return OverwhelmedError(f"it ended with exit code {code}")
+        return self._killed()
+
+    def _killed(self) -> MachineError:
+        """Return the error for a simulator that was killed before its time limit. In a cell, no node can kill it."""
+        # A fork of which the fork server reports nothing also counts as killed (grader.trial.fork).
+        how = "before the trial had ended" if self._node_runs else "or could not be started"
+        if self._conductor.out_of_memory():
+            why = "The kernel killed processes of the trial because too little memory was left."
+        else:
+            no_node = self._in_cell or not self._node_runs
+            others = "another program" if no_node else "another program, such as the node,"
+            why = f"Perhaps the memory of the machine was used up, or an administrator or {others} killed it."
+        message = f"The simulator was killed (SIGKILL) {how}. Its time limit was not the reason. {why}"
+        return MachineError(f"{message} Try again when more memory is free.")
 
 
 def _fault(output: str) -> MachineError:

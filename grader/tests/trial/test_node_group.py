@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.errors import MachineError
 from grader.evidence import activity, student_log
 from grader.evidence.trajectory import trajectory_of
 from grader.ros.installation import find_ros
@@ -17,7 +18,7 @@ from grader.trial.inputs import Inputs
 from grader.trial.recording import Pose, Recording
 from grader.trial.recording_json import from_json, to_json
 from grader.trial.target_places import Target, draw_targets
-from grader.trial.trial import OverwhelmedError, Plan, Trial
+from grader.trial.trial import Plan, Trial
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -201,6 +202,6 @@ def test_a_child_in_a_session_of_its_own_ends_with_a_trial_without_a_sandbox() -
 
 def test_a_node_ends_with_its_conductor_without_a_sandbox(tmp_path: Path) -> None:
     pid = tmp_path / "pid"
-    with pytest.raises(OverwhelmedError):
+    with pytest.raises(MachineError, match=r"killed \(SIGKILL\).* another program, such as the node, killed it"):
         trial_of(Inputs(), 1.0, in_cell=False, kills=KILLS_THE_CONDUCTOR.replace("{pid}", str(pid)))
     until_gone(int(pid.read_text("ascii")))

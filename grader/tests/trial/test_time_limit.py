@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import Timer
@@ -12,6 +13,8 @@ import pytest
 
 from grader.errors import MachineError
 from grader.ros.installation import find_ros
+from grader.ros.underlay import with_turtlesim
+from grader.sandbox import bubblewrap
 from grader.tests.in_ros import HANG_S
 from grader.tests.trial.made_conductor import READY, replace_conductor
 from grader.trial import time_limit
@@ -86,6 +89,32 @@ def test_a_closed_trial_gets_no_new_limit(monkeypatch: pytest.MonkeyPatch) -> No
     conductor.close()
 
 
+@pytest.mark.parametrize(
+    ("out_of_memory", "why"), [(True, "too little memory was left"), (False, "Perhaps the memory .* killed it")]
+)
+@pytest.mark.parametrize("program", [f"{READY}; kill -9 $$", "read plan; kill -9 $$"], ids=["later", "at the start"])
+def test_a_conductor_that_others_kill_is_the_machines_fault_and_was_not_too_slow(
+    monkeypatch: pytest.MonkeyPatch, program: str, why: str, *, out_of_memory: bool
+) -> None:
+    monkeypatch.setattr(PlainConductor, "out_of_memory", lambda _: out_of_memory)
+    replace_conductor(monkeypatch, program)
+    with (
+        Trial(Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=False) as trial,
+        pytest.raises(MachineError, match=rf"was killed \(SIGKILL\) .*\. Its time limit was not the reason\. .*{why}"),
+    ):
+        trial.run("package", "executable", b"")
+
+
+@pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+def test_in_a_room_the_node_is_not_among_those_who_can_kill_the_conductor() -> None:
+    plan = Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0)
+    with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
+        trial.await_ready()
+        os.kill(trial._conductor.pids()[1], signal.SIGKILL)
+        with pytest.raises(MachineError, match="or an administrator or another program killed it"):
+            trial.run("package", "executable", b"")
+
+
 @pytest.mark.parametrize(("share", "error"), [(0.0, OverwhelmedError), (1.0, MachineError)])
 def test_a_trial_that_hangs_on_a_crowded_machine_is_the_machines_fault(
     monkeypatch: pytest.MonkeyPatch, share: float, error: type[Exception]
@@ -98,3 +127,17 @@ def test_a_trial_that_hangs_on_a_crowded_machine_is_the_machines_fault(
         monkeypatch.setattr(time_limit, "Timer", lambda _, end: Timer(0.2, end))
         with pytest.raises(error):
             trial.run("package", "executable", b"")
+
+
+def test_a_simulator_that_does_not_get_ready_on_a_crowded_machine_is_not_said_to_have_failed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(time_limit, "Others", Others)
+    monkeypatch.setattr(Others, "share", 1.0)
+    monkeypatch.setattr(time_limit, "Timer", lambda _, end: Timer(0.2, end))
+    replace_conductor(monkeypatch, "echo 'a warning' >&2; exec sleep 300")
+    with (
+        Trial(Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=False) as trial,
+        pytest.raises(MachineError, match="The machine was too busy to finish the trial in time"),
+    ):
+        trial.await_ready()
