@@ -20,6 +20,8 @@ LATE_S = 1.0
 """The maximum time (s), on the trial's clock, to wait until the service of a call is available."""
 FOUND_S = 0.5
 """The maximum wall time (s) to wait until a service is discovered, while simulated time stands still."""
+ROUNDING_NS = 1000
+"""The maximum error (ns) of the time of a request, which DDS does not store in nanoseconds."""
 
 
 class Caller:
@@ -28,6 +30,8 @@ class Caller:
     During this wait, the later calls wait, too.
 
     The clients are created at the start, so that discovery is usually complete before the first call.
+
+    Servers of `node` itself do not count: they are the silent servers (see SilentServers), which never respond.
     """
 
     def __init__(self, node: Node, calls: tuple[PlannedCall, ...], now: Callable[[], float]) -> None:
@@ -36,6 +40,8 @@ class Caller:
         self._waiting = [(call, self._client(call)) for call in sorted(calls, key=lambda call: call.at_s)]
         self._first_s: dict[int, float] = {}
         self._made: list[Call] = []
+        self._sent: list[tuple[str, int, int]] = []
+        """The requests that no silent server has received: the service, and the system time before and after (ns)."""
 
     @property
     def calls(self) -> tuple[Call, ...]:
@@ -47,6 +53,18 @@ class Caller:
         """Whether a call is still waiting for its response."""
         return any(call.response is None and not call.missing for call in self._made)
 
+    def sent(self, service: str, sent_ns: int) -> bool:
+        """Return whether the request that a silent server received, sent at this system time (ns), is from the trial.
+
+        A request also contains the id of its client, but rclpy does not provide it.
+        """
+        for each in self._sent:
+            name, before_ns, after_ns = each
+            if name == service and before_ns - ROUNDING_NS <= sent_ns <= after_ns + ROUNDING_NS:
+                self._sent.remove(each)
+                return True
+        return False
+
     def make_due(self, now_s: float, *, spin: Callable[[float], object] | None) -> None:
         """Make the calls that are due.
 
@@ -55,7 +73,7 @@ class Caller:
         """
         while self._waiting and self._waiting[0][0].at_s <= now_s:
             call, client = self._waiting[0]
-            if not client.service_is_ready() and not self._given_up(call, client, now_s, spin):
+            if not self._is_ready(client) and not self._given_up(call, client, now_s, spin):
                 return
             self._waiting.pop(0)
             self._make(call, client, now_s)
@@ -67,14 +85,14 @@ class Caller:
         until = time.monotonic() + FOUND_S
         while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
             spin(0.01)
-            if client.service_is_ready():
+            if self._is_ready(client):
                 return True
         first_s = self._first_s.setdefault(id(call), now_s)
         return now_s - first_s >= LATE_S
 
     def _make(self, call: PlannedCall, client: Client, now_s: float) -> None:
         index = len(self._made)
-        ready = client.service_is_ready()
+        ready = self._is_ready(client)
         self._made.append(Call(now_s, call.service, call.type, call.request, by_trial=True, missing=not ready))
         if not ready:
             return
@@ -84,7 +102,14 @@ class Caller:
             if response is not None:
                 self._made[index] = self._made[index].answered(self._now(), plain(response))
 
-        client.call_async(fill(client.srv_type.Request(), call.request)).add_done_callback(answered)
+        request = fill(client.srv_type.Request(), call.request)
+        before_ns = time.time_ns()
+        client.call_async(request).add_done_callback(answered)
+        self._sent.append((call.service, before_ns, time.time_ns()))
+
+    def _is_ready(self, client: Client) -> bool:
+        silent = sum(service.srv_name == client.srv_name for service in self._node.services)
+        return bool(client.service_is_ready() and self._node.count_services(client.srv_name) > silent)
 
     def _client(self, call: PlannedCall) -> Client:
         return self._node.create_client(load_type(call.type, "srv"), call.service)

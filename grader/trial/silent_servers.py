@@ -27,11 +27,23 @@ class SilentServers:
     silent server first.
     """
 
-    def __init__(self, recorder: Recorder, prefixes: list[Path], on_request: Callable[[str, str, Any], object]) -> None:
-        """Create the object without any servers. `on_request(service, type, request)` is called for each request."""
+    def __init__(
+        self,
+        recorder: Recorder,
+        prefixes: list[Path],
+        on_request: Callable[[str, str, Any], object],
+        is_by_trial: Callable[[str, int], bool],
+    ) -> None:
+        """Create the object without any servers.
+
+        `on_request(service, type, request)` is called for each request that a node sent. The servers also receive the
+        requests of the trial itself: for these, `is_by_trial(service, sent_ns)` must return True. `sent_ns` is the
+        system time (ns) at which the request was sent.
+        """
         self._recorder = recorder
         self._prefixes = prefixes
         self._on_request = on_request
+        self._is_by_trial = is_by_trial
         self._known: set[str] = set()
 
     def follow(self) -> bool:
@@ -49,10 +61,11 @@ class SilentServers:
         if service_type is None:
             return False
 
-        def received(request: Any, response: Any) -> Any:  # noqa: ANN401 - ROS messages
-            self._on_request(offer.service, offer.type, request)
-            return response
+        def received(request: Any, header: Any) -> None:  # noqa: ANN401 - a ROS message and its header
+            if not self._is_by_trial(offer.service, header.source_timestamp):
+                self._on_request(offer.service, offer.type, request)
 
-        service = self._recorder.create_service(service_type, offer.service, received)
-        service.send_response = lambda *_: None
+        # rclpy passes the header of the request only to `send_response`, with the result of the callback.
+        service = self._recorder.create_service(service_type, offer.service, lambda request, _: request)
+        service.send_response = received
         return True

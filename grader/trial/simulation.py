@@ -85,10 +85,11 @@ class Simulation:
             on_goal=self.goals.add,
         )
         self.turtles = TurtleWatch(target.name for target in inputs.targets)
-        self.caller = Caller(self.recorder, inputs.calls, self.now) if inputs.calls else None
-        self.recorder.follows_services = self.caller is not None
+        self.caller = Caller(self.recorder, inputs.calls, self.now)
+        self.recorder.follows_services = bool(inputs.calls)
         several = node is not None and len(node.processes) > 1
-        self._silent_servers = SilentServers(self.recorder, prefixes, self._calls.overheard) if several else None
+        silent = SilentServers(self.recorder, prefixes, self._calls.overheard, self.caller.sent)
+        self._silent_servers = silent if several else None
         self._in_company_s: float | None = None
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
@@ -135,8 +136,7 @@ class Simulation:
 
     def frame(self, now_s: float) -> None:
         """Run one frame of the simulator, and record it."""
-        if self.caller is not None:
-            self.caller.make_due(now_s, spin=self.spin if self.held else None)
+        self.caller.make_due(now_s, spin=self.spin if self.held else None)
         drive = self.inputs.drive(now_s)
         if drive is not None and self.turtlesim.turtle_state("turtle1") is not None:
             self.turtlesim.world.command("turtle1", drive[0], 0.0, drive[1])
@@ -178,7 +178,7 @@ class Simulation:
 
     def may_act(self) -> bool:
         """Return whether a node has a client of the simulator's actions, or a call by the trial is pending."""
-        if self.caller is not None and self.caller.pending:
+        if self.caller.pending:
             return True
         if self._actions is None:
             self._actions = [
@@ -250,8 +250,7 @@ class Simulation:
     @property
     def calls(self) -> tuple[Call, ...]:
         """All recorded service calls, in the order in which they were made."""
-        made = self.caller.calls if self.caller is not None else ()
-        return tuple(sorted((*self._calls.calls, *made), key=lambda call: call.t_s))
+        return tuple(sorted((*self._calls.calls, *self.caller.calls), key=lambda call: call.t_s))
 
     def _intervened(self, name: str) -> None:
         # A thousand calls to a harmless service must not hide the next teleport.

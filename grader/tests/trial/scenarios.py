@@ -172,7 +172,9 @@ def a_call_between_two_nodes() -> dict[str, Any]:
     stage = _stage()
     recorded: list[tuple[str, str, str]] = []
     prefixes = [Path(prefix) for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)]
-    silent = SilentServers(stage.recorder, prefixes, lambda *call: recorded.append((*call[:2], call[2].name)))
+    silent = SilentServers(
+        stage.recorder, prefixes, lambda *call: recorded.append((*call[:2], call[2].name)), lambda *_: False
+    )
     student = rclpy.create_node("student")
 
     def spawn(request: Any, response: Any) -> Any:  # noqa: ANN401 - ROS messages

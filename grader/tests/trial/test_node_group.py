@@ -14,7 +14,7 @@ from grader.evidence.trajectory import trajectory_of
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.tests.waiting import until_gone
-from grader.trial.inputs import Inputs
+from grader.trial.inputs import Inputs, PlannedCall
 from grader.trial.recording import Pose, Recording
 from grader.trial.recording_json import from_json, to_json
 from grader.trial.target_places import Target, draw_targets
@@ -96,6 +96,23 @@ node.create_timer(0.1, lambda: publisher.publish(Twist(linear=Vector3(x=0.5))))
 """
 
 
+LAYS = """
+from turtlesim.srv import Spawn
+def lay(request, response):
+    response.name = request.name.upper()
+    return response
+server = node.create_service(Spawn, "/lay", lay)
+"""
+ASKS = """
+from turtlesim.srv import Spawn
+client = node.create_client(Spawn, "/lay")
+node.create_timer(1.0, lambda: client.call_async(Spawn.Request(name="egg")))
+"""
+WITHDRAWS = """
+timer = node.create_timer(1.5, lambda: (node.destroy_service(server), timer.cancel()))
+"""
+
+
 def trial_of(inputs: Inputs, duration_s: float = 4.0, *, in_cell: bool = True, **bodies: str) -> Recording:
     """Return the recording of one trial in which a node with each of these bodies runs."""
     stream = io.BytesIO()
@@ -109,6 +126,12 @@ def trial_of(inputs: Inputs, duration_s: float = 4.0, *, in_cell: bool = True, *
     plan = Plan("simulated", START, None, duration_s, inputs=inputs, beside=tuple(others))
     with Trial(plan, with_turtlesim(find_ros()), in_cell=in_cell) as trial:
         return trial.run(PACKAGE, first, stream.getvalue())
+
+
+def eggs(*at_s: float) -> Inputs:
+    """Return inputs in which the trial calls /lay at these times (s), with the request that ASKS sends."""
+    request = {"name": "egg"}
+    return Inputs(calls=tuple(PlannedCall(each, "/lay", "turtlesim/srv/Spawn", request) for each in at_s))
 
 
 @pytest.fixture(scope="module")
@@ -128,6 +151,20 @@ def test_each_node_keeps_its_own_output_and_stops_on_ctrl_c(both: Recording) -> 
     assert [each.end.by for each in (both, beside)] == ["SIGINT", "SIGINT"]
     assert {"/ping", "/pong"} <= set(both.graphs[-1].nodes)
     assert from_json(to_json(both)).beside == both.beside
+
+
+def test_the_trials_own_calls_are_no_calls_between_the_nodes() -> None:
+    recording = trial_of(eggs(1.0, 1.5, 2.5), 3.5, lays=LAYS, asks=ASKS)
+    by_trial = [call for call in recording.calls if call.by_trial]
+    assert [call.t_s for call in by_trial] == pytest.approx([1.0, 1.5, 2.5], abs=0.02)
+    assert [(call.response or {}).get("name") for call in by_trial] == ["EGG"] * 3
+    between = [call.t_s for call in recording.calls if not call.by_trial]
+    assert between == pytest.approx([1.0, 2.0, 3.0], abs=0.05)
+
+
+def test_a_service_that_its_node_has_withdrawn_is_missing_though_the_trial_listens_to_it() -> None:
+    recording = trial_of(eggs(1.0, 2.0), 4.0, lays=LAYS + WITHDRAWS, ping=PING)
+    assert [(call.missing, call.response is None) for call in recording.calls] == [(False, False), (True, True)]
 
 
 def test_when_one_node_ends_the_trial_is_over_for_all() -> None:

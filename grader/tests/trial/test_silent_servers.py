@@ -35,7 +35,7 @@ def follow(monkeypatch: pytest.MonkeyPatch, *offers: Offer) -> list[str]:
     """Return the services that get a silent server if nodes offer these services."""
     monkeypatch.setattr(silent_servers, "load_class", lambda *_: object())
     recorder: Any = Recorder(*offers)
-    servers = SilentServers(recorder, [], lambda *_: None)
+    servers = SilentServers(recorder, [], lambda *_: None, lambda *_: False)
     assert servers.follow()
     assert not servers.follow()
     return list(recorder.served)
