@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_from, find_exercise
+from grader.common.system_errors import path_and_reason
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import FILE_NAME, course_folder
 from grader.exercise.private_checks import sources_of
@@ -31,7 +32,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
 
     Raises:
         UsageError: the exercise does not exist, the private checks are wrong, or this is not a checkout of the course.
-        MachineError: the archive cannot be written.
+        MachineError: the archive cannot be written, or a file of the course cannot be read.
     """
     known = find_exercise(exercise)
     sources = sources_of({known.id}, checks)[known.id]
@@ -52,7 +53,9 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
             for path in _course(root):
                 _add(archive, f"course/{path.relative_to(root).as_posix()}", path.read_bytes(), executable=_runs(path))
     except OSError as error:
-        message = f"{file} could not be written: {error.strerror}."
+        path, reason = path_and_reason(error)
+        # A file of the course could be unreadable, too.
+        message = f"{file} could not be created: {reason}{f' ({path})' if path not in ('', str(file)) else ''}."
         raise MachineError(message) from error
 
 

@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 from grader.common.interpreter import interpreter
+from grader.common.system_errors import path_and_reason
 from grader.errors import MachineError
 from grader.ros.installation import made_for
 
@@ -84,7 +85,8 @@ def install(prefix: Path | None = None) -> Path:
                 folder, NAME, user=prefix is None, prefix=str(prefix) if prefix else None
             )
         except OSError as error:
-            message = f"The kernel could not be installed in {error.filename}: {error.strerror}."
+            path, reason = path_and_reason(error)
+            message = f"The kernel could not be installed{f' in {path}' if path else ''}: {reason}."
             raise MachineError(message) from error
     return Path(placed)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -65,3 +66,14 @@ def test_the_kernel_starts_again_only_once(started: list[list[str]], monkeypatch
     with pytest.raises(StartedError):
         kernel.main()
     assert "ipykernel_launcher" in started[0]
+
+
+def test_a_full_disk_is_named_when_the_kernel_is_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(source: str, target: str, **_: object) -> None:
+        raise shutil.Error([(source, f"{target}/kernel.json", "[Errno 28] No space left on device")])
+
+    monkeypatch.setattr(shutil, "copytree", full)
+    with pytest.raises(
+        MachineError, match=r"^The kernel could not be installed in .*kernel\.json: No space left on device\.$"
+    ):
+        kernel.install(tmp_path)
