@@ -1,4 +1,4 @@
-"""Every attack in hostile/ is stopped by the sandbox, and works without a sandbox."""
+"""Every attack in hostile/ is stopped. Without a sandbox, the attacks on the host work."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Correct submissions that differ from our solutions get full marks. The reports contain no criticism except advice.
 
-`make test` grades every third submission, and leaves out submissions that need a trial in wall time, since each takes
-ten seconds.
+`make test` grades at most every fourth submission, and leaves out submissions that need a trial in wall time, since
+each takes ten seconds.
 """
 
 from __future__ import annotations

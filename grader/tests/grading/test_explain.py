@@ -1,4 +1,4 @@
-"""Causes are proved by testing a fix. The tests use invented runs."""
+"""Causes are confirmed by testing a fix. The tests use invented runs."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def test_the_most_frequent_failures_come_first_with_causes(folder: Path) -> None
     assert "linear.x divided by angular.z" in circle.diagnoses[0].text
 
 
-def test_the_change_that_proved_a_cause_is_for_instructors_only(folder: Path) -> None:
+def test_the_change_that_confirmed_a_cause_is_for_instructors_only(folder: Path) -> None:
     given = report("failed")
     change = "-        msg.linear.x = 2.2\n+        msg.linear.x = <2.0>\n"
     given = replace(

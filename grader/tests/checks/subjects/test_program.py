@@ -1,4 +1,4 @@
-"""A program that prints the content of a bag, and its message about a bag without poses."""
+"""A program that prints a summary of a bag, and its message about a bag without poses."""
 
 from __future__ import annotations
 
