@@ -42,7 +42,7 @@ def test_without_a_base_the_files_are_all_there_is(cases: Path, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("text", ['why = ""\nresult = "fine"\n', 'why = ""\nresult = "failed"\nfailled = ["rate"]\n'])
-def test_a_slip_in_expected_toml_is_no_case_that_passes(cases: Path, text: str) -> None:
+def test_a_mistake_in_expected_toml_is_an_error(cases: Path, text: str) -> None:
     (cases / "001-x" / "expected.toml").write_text(text)
     with pytest.raises(ValueError, match=r"001-x/expected\.toml"):
         read_case(cases / "001-x")

@@ -158,7 +158,10 @@ def assert_held(attack: Attack, done: Graded) -> None:
 
 
 def was_there(evidence: Evidence, what: str) -> bool:
-    """Return whether the evidence has a topic, a node, an intervention, an output of a call, or too many files."""
+    """Return whether `what` is in the evidence: a topic, a node, an intervention, an output of a call, or "... files".
+
+    If the simulator was overwhelmed, return True.
+    """
     if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):

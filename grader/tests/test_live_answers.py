@@ -62,6 +62,8 @@ def test_a_renamed_topic_and_a_slower_pose_make_the_same_answers_wrong(
     assert not_passed(judged(changed, {})) == {"motion-topic", "pose-rate"}
 
 
-def test_and_make_other_answers_right(judged: Callable[[str, dict[str, str]], Report]) -> None:
+def test_a_renamed_topic_and_a_slower_pose_make_other_answers_right(
+    judged: Callable[[str, dict[str, str]], Report],
+) -> None:
     changed = 'rename = ["/turtle1/cmd_vel:=/turtle1/drive"]\npose_every = 5\n'
     assert not_passed(judged(changed, {"/turtle1/cmd_vel": "/turtle1/drive", "62.5": "12.5"})) == set()

@@ -112,7 +112,7 @@ def test_all_reading_is_behind_the_door_or_of_what_is_ours() -> None:
     assert (unknown, known.keys() - found.keys() - {("clues", "wall_clues")}) == ([], set()), "see submission/reader.py"
 
 
-def test_the_door_is_where_it_is_said_to_be() -> None:
+def test_the_list_of_modules_that_call_the_reader_is_right() -> None:
     doors = {
         path.stem
         for path, tree in sources()

@@ -148,7 +148,7 @@ def test_the_search_by_keyboard(page: Page, book: Path, url: str) -> None:
     page.wait_for_url(f"{url}{CIRCLE}#the-parts-you-need")
 
 
-def test_copy_takes_what_is_typed(browser: Browser, url: str) -> None:
+def test_the_copy_button_copies_only_the_command(browser: Browser, url: str) -> None:
     context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
     tab = context.new_page()
     tab.goto(url + CIRCLE)

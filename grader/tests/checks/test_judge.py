@@ -53,7 +53,7 @@ def test_a_good_submission_gets_all_points_and_exit_code_0() -> None:
         ("late", 80.0),
     ],
 )
-def test_partial_credit(shape: str, points: float) -> None:
+def test_a_wrong_node_gets_the_points_of_the_checks_that_passed(shape: str, points: float) -> None:
     made = report(judge(evidence(SHAPES[shape]())))
     assert (made.points, made.exit_code) == (points, 1)
 
@@ -114,7 +114,9 @@ def test_a_students_fault_before_the_machines_is_reported_as_the_students() -> N
     assert outcomes["circle"].status is Status.SKIPPED
 
 
-def test_what_breaks_a_check_could_not_be_read_and_the_others_are_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exception_in_a_check_is_reported_as_unreadable_and_the_others_are_judged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def broken(*_: object) -> Finding:
         raise ZeroDivisionError
 

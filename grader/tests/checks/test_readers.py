@@ -66,7 +66,7 @@ def test_setup_py_as_the_lesson_has_it() -> None:
     )
 
 
-def test_what_is_no_constant_stays_unknown() -> None:
+def test_an_argument_that_is_not_constant_is_unknown() -> None:
     setup = read_setup_py(b"import x\nfrom setuptools import setup\nsetup(name=x.y(), entry_points=x.z, **x.more)\n")
     assert (setup.name, setup.entry_points) == (None, None)
 
@@ -178,7 +178,7 @@ def test_a_starred_argument_hides_its_place() -> None:
         ("linear = Vector3(y=1.0)", None),
     ],
 )
-def test_where_a_field_is_set(text: str, line: int | None) -> None:
+def test_the_line_that_sets_a_field_is_found(text: str, line: int | None) -> None:
     found = read_code({"a.py": text.encode()}, "a.py").assigned("linear", "x")
     assert (None if found is None else found.line) == line
 

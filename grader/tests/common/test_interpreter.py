@@ -63,7 +63,7 @@ def test_a_script_is_named_by_its_absolute_path() -> None:
         interpreter("script.py")
 
 
-def test_what_leads_to_the_current_folder_goes_and_the_rest_stays() -> None:
+def test_only_entries_that_lead_to_the_current_folder_are_removed() -> None:
     env = {
         "PATH": ":/usr/bin:.:bin",
         "PYTHONPATH": ":",
@@ -74,7 +74,7 @@ def test_what_leads_to_the_current_folder_goes_and_the_rest_stays() -> None:
     assert clean(env) == {"PATH": "/usr/bin", "LD_LIBRARY_PATH": "/a:/b", "LANG": "C"}
 
 
-def test_variables_that_describe_another_python_go() -> None:
+def test_variables_that_describe_another_python_are_removed() -> None:
     """As the compilers of conda set them."""
     env = {**os.environ, "_PYTHON_SYSCONFIGDATA_NAME": "_sysconfigdata_x86_64_conda_cos6_linux_gnu"}
     code = "import sysconfig; print(sysconfig.get_config_var('EXT_SUFFIX') is not None)"

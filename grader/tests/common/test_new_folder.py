@@ -44,7 +44,7 @@ def test_the_message_has_the_path_and_the_reason(tmp_path: Path) -> None:
         write(tmp_path / "new", OSError(errno.ENOSPC, "full", "a/b/d"))
 
 
-def test_what_could_not_be_removed_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_that_could_not_be_removed_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Path, "rmdir", lambda _: (_ for _ in ()).throw(OSError(errno.EPERM, "no")))
     with pytest.raises(MachineError, match=r"Remove .*/new before you try again\.$"), new_folder(tmp_path / "new"):
         write(tmp_path / "new", OSError(errno.ENOSPC, "full", "a/b/d"))

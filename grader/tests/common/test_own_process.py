@@ -25,7 +25,7 @@ def test_every_program_finds_a_home(home: str | None) -> None:
     assert prepared("import os; print(os.path.expanduser('~/x'))", HOME=home) == str(Path(own, "x"))
 
 
-def test_a_home_stays() -> None:
+def test_a_home_that_is_set_stays_unchanged() -> None:
     assert prepared("import os; print(os.environ['HOME'])", HOME="/else where") == "/else where"
 
 

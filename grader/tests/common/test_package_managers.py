@@ -47,7 +47,7 @@ def test_each_manager_has_names_of_its_own(program: str, names: str) -> None:
         ("zypper", "sudo zypper --non-interactive install gcc-c++ python3-devel"),
     ],
 )
-def test_the_line_to_type(program: str, line: str) -> None:
+def test_each_manager_has_its_command_line(program: str, line: str) -> None:
     needs = [Need("a compiler", "g++"), Need("headers", "python3-dev")]
     assert package_managers.command(BY_NAME[program], needs, root=False) == line
     assert package_managers.command(BY_NAME[program], needs, root=True) == line.replace("sudo ", "")

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         (FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/tmp']"), "with TMPDIR"),
     ],
 )
-def test_what_the_system_refuses_is_one_sentence_with_what_to_do(error: BaseException, said: str) -> None:
+def test_a_failed_system_call_is_one_sentence_with_what_to_do(error: BaseException, said: str) -> None:
     sentence = refusal(error)
     assert sentence is not None
     assert said in sentence
@@ -45,7 +45,7 @@ def test_what_our_own_code_raises_is_no_refusal(error: BaseException) -> None:
     assert refusal(error) is None
 
 
-def test_a_path_that_does_not_exist_is_whoever_named_its_mistake() -> None:
+def test_a_path_that_does_not_exist_is_not_a_fault_of_the_machine() -> None:
     assert of_the_machine(OSError(errno.ENOSPC, "x"))
     assert not of_the_machine(FileNotFoundError(errno.ENOENT, "x"))
     assert not of_the_machine(PermissionError(errno.EACCES, "x"))

@@ -82,7 +82,7 @@ def test_the_residual_of_a_square_is_its_distance_from_the_circle() -> None:
     ],
     ids=["none", "two", "one place", "a line", "nan", "infinity"],
 )
-def test_no_circle_through(x: list[float], y: list[float]) -> None:
+def test_points_without_a_single_circle_give_none(x: list[float], y: list[float]) -> None:
     assert fit_circle(np.array(x), np.array(y)) is None
 
 

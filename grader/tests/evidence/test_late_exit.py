@@ -25,7 +25,7 @@ INTERRUPTED = ProcessEnd(by="SIGINT", exit_code=0, t_s=10.1, stop_s=0.1)
     [(UNCAUGHT, 0.5, "itself"), (UNCAUGHT, 10.0, "SIGINT"), (CAUGHT, 0.5, "SIGINT"), ("", 0.5, "SIGINT")],
     ids=["uncaught", "after Ctrl-C", "printed by the node", "nothing"],
 )
-def test_who_ended_the_node(stderr: str, at_s: float, by: str) -> None:
+def test_an_uncaught_exception_before_ctrl_c_ended_the_node(stderr: str, at_s: float, by: str) -> None:
     output = Output(stderr, times=(at_s,) * len(stderr.splitlines()))
     given = replace(recording(every(0.5, 2.0, 1.0)), end=INTERRUPTED, sigint_t_s=10.0, stderr=output)
     end = with_crash_first(given).end

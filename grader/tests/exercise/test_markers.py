@@ -84,7 +84,7 @@ def test_a_text_without_markers_stays_as_it_is() -> None:
         ("<!-- BEGIN SOLUTION -->\n", 1, "looks like a marker"),
     ],
 )
-def test_markers_amiss_are_named_with_their_line(text: str, line: int, what: str) -> None:
+def test_wrong_markers_are_reported_with_their_line(text: str, line: int, what: str) -> None:
     with pytest.raises(UsageError) as caught:
         stripped(text, HASH, "step/x.py")
     assert str(caught.value).startswith(f"step/x.py:{line}: ")

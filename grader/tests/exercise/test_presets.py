@@ -132,7 +132,7 @@ def load(folder: Path, text: str) -> Exercise:
     return load_exercise(folder)
 
 
-def test_a_preset_is_what_it_stands_for(tmp_path: Path) -> None:
+def test_a_preset_is_the_same_as_the_checks_that_it_stands_for(tmp_path: Path) -> None:
     assert load(tmp_path, HEAD + SHORT).checks == load(tmp_path, HEAD + LONG).checks
 
 

@@ -68,7 +68,7 @@ def test_the_same_id_replaces_and_a_new_one_is_added() -> None:
     assert [each.trials[0].scenario.duration_s for each in (public, both)] == [10.0, 9.5]
 
 
-def test_what_is_private_is_hidden_unless_it_says_not() -> None:
+def test_private_checks_are_hidden_unless_they_are_declared_visible() -> None:
     hidden = {check.id for check in merged(PRIVATE).checks if check.hidden}
     assert hidden == {"rate", "secret-radius"}
 
@@ -122,7 +122,7 @@ def test_a_folder_for_no_exercise_of_ours_is_reported(tmp_path: Path) -> None:
         sources_of({STEP}, tmp_path)
 
 
-def test_students_see_of_a_hidden_check_whether_it_passed_and_no_more(tmp_path: Path) -> None:
+def test_students_see_only_whether_a_private_check_passed(tmp_path: Path) -> None:
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     copy_solution(STEP, tmp_path / "class" / "anna")

@@ -54,7 +54,7 @@ def reported(done: Done) -> None:
 
 
 @pytest.mark.parametrize(("name", "call", "number", "nth"), EVERY_DAY)
-def test_what_the_system_refuses_a_command_is_a_sentence(
+def test_a_failed_system_call_of_a_command_is_reported_in_one_sentence(
     tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
 ) -> None:
     done = commanded(name, tmp_path, shim, (call, number, nth))
@@ -63,7 +63,7 @@ def test_what_the_system_refuses_a_command_is_a_sentence(
 
 
 @pytest.mark.parametrize(("call", "number"), [("fork", errno.EAGAIN), ("open", errno.EMFILE), ("mkdir", errno.ENOSPC)])
-def test_what_the_system_refuses_watch_is_said_and_it_ends_as_it_was_requested_to(
+def test_watch_reports_a_failed_system_call_and_can_still_be_ended(
     tmp_path: Path, shim: Path, call: str, number: int
 ) -> None:
     package = tmp_path / PACKAGE
@@ -116,7 +116,9 @@ def set_up(folder: Path, shim: Path, call: str, number: int, nth: int) -> Done:
         ("flock", errno.EPERM),
     ],
 )
-def test_what_the_system_refuses_the_set_up_is_a_sentence(tmp_path: Path, shim: Path, call: str, number: int) -> None:
+def test_a_failed_system_call_of_the_set_up_is_reported_in_one_sentence(
+    tmp_path: Path, shim: Path, call: str, number: int
+) -> None:
     done = set_up(tmp_path, shim, call, number, 1)
     reported(done)
     assert (done.code, done.failures > 0) == (3, True), done
@@ -125,7 +127,7 @@ def test_what_the_system_refuses_the_set_up_is_a_sentence(tmp_path: Path, shim: 
 @pytest.mark.exhaustive
 @pytest.mark.parametrize(("call", "number", "nth"), ALL)
 @pytest.mark.parametrize("name", DOORS)
-def test_nothing_that_the_system_refuses_a_command_is_a_traceback(
+def test_no_failed_system_call_of_a_command_is_a_traceback(
     tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
 ) -> None:
     reported(commanded(name, tmp_path, shim, (call, number, nth)))

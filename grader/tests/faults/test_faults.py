@@ -65,21 +65,23 @@ def judge(checked: Checked) -> None:
         assert "error" in checked.statuses or done.said.count("grader: ") == 1, done
 
 
-def test_the_shim_lets_everything_pass_that_it_is_not_to_stop(tmp_path: Path, shim: Path) -> None:
+def test_the_shim_without_a_fault_stops_no_call(tmp_path: Path, shim: Path) -> None:
     passed = checked(tmp_path, shim, beside_a_trial("open", errno.EMFILE, 10**9))
     judge(passed)
     assert (passed.done.code, passed.done.failures) == (0, 0), passed.done.said
 
 
 @pytest.mark.parametrize(("call", "number", "nth"), EVERY_DAY)
-def test_what_the_system_refuses_is_a_sentence(tmp_path: Path, shim: Path, call: str, number: int, nth: int) -> None:
+def test_a_failed_system_call_is_reported_in_one_sentence(
+    tmp_path: Path, shim: Path, call: str, number: int, nth: int
+) -> None:
     refused = checked(tmp_path, shim, beside_a_trial(call, number, nth))
     judge(refused)
     assert refused.done.failures > 0
 
 
 @pytest.mark.parametrize(("call", "number", "nth"), IN_ROOMS)
-def test_what_a_conductor_is_refused_is_a_sentence(
+def test_a_failed_system_call_of_a_conductor_is_reported_in_one_sentence(
     tmp_path: Path, shim: Path, call: str, number: int, nth: int
 ) -> None:
     refused = checked(tmp_path, shim, in_a_room(call, number, nth))
@@ -89,7 +91,7 @@ def test_what_a_conductor_is_refused_is_a_sentence(
     assert "`.." not in refused.done.said
 
 
-def test_a_full_disk_behind_standard_output_is_a_sentence() -> None:
+def test_a_full_disk_behind_standard_output_is_reported_in_one_sentence() -> None:
     command = [str(Path(sys.prefix, "bin/grader")), "check", str(SOLUTION)]
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
@@ -99,7 +101,5 @@ def test_a_full_disk_behind_standard_output_is_a_sentence() -> None:
 
 @pytest.mark.exhaustive
 @pytest.mark.parametrize(("call", "number", "nth"), ALL)
-def test_nothing_that_the_system_refuses_is_a_traceback(
-    tmp_path: Path, shim: Path, call: str, number: int, nth: int
-) -> None:
+def test_no_failed_system_call_is_a_traceback(tmp_path: Path, shim: Path, call: str, number: int, nth: int) -> None:
     judge(checked(tmp_path, shim, beside_a_trial(call, number, nth)))

@@ -62,7 +62,7 @@ def tries(
     return found, {outcome.id: outcome for outcome in reported.outcomes}
 
 
-def test_a_cause_that_makes_the_check_pass_is_proved() -> None:
+def test_a_cause_whose_fix_makes_the_check_pass_is_confirmed() -> None:
     found, reported = tries("a\n", lambda text: [right("values") if RIGHT in text else wrong("values")])
     assert [each.result for each in found.made] == ["passes"]
     assert reported["values"].finding.tried == PASSES
@@ -84,14 +84,14 @@ def test_a_cause_that_changes_nothing_is_refuted_and_not_reported() -> None:
     assert (reported["values"].finding.cause, reported["values"].finding.tried) == ("", REFUTED)
 
 
-def test_a_change_that_breaks_another_check_proves_nothing() -> None:
+def test_a_change_that_breaks_another_check_confirms_nothing() -> None:
     def judged(text: str) -> list[Outcome]:
         return [wrong("values"), right("rate")] if RIGHT not in text else [wrong("values", line=2), wrong("rate")]
 
     assert tries("a\na\n", judged)[0].made[0].result == "refuted"
 
 
-def test_mistakes_behind_a_mistake_are_counted_and_proved_in_turn() -> None:
+def test_mistakes_behind_a_mistake_are_counted_and_confirmed_in_turn() -> None:
     def judged(text: str) -> list[Outcome]:
         at = next((line for line, part in enumerate(text.split(), 1) if part == "a"), 0)
         return [wrong("start", line=at) if at else right("start")]
@@ -162,7 +162,7 @@ def test_without_time_nothing_is_tried() -> None:
     assert found == Tries(stopped=TOO_LONG)
 
 
-def test_a_wrong_topic_is_proved_by_a_run_in_the_cell(tmp_path: Path) -> None:
+def test_a_wrong_topic_is_confirmed_by_a_run_in_the_cell(tmp_path: Path) -> None:
     case = read_case(CASES.parent / "mistakes" / "324-topic-without-turtle")
     options = Options(bubblewrap.usable(), clock="simulated", explain=True)
     graded = grade(exercise(), open_submission(make_submission(case, tmp_path / "in")), options)

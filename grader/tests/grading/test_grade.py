@@ -177,7 +177,7 @@ def test_a_fault_of_the_machine_is_an_error_and_no_failure(tmp_path: Path, fault
 
 
 @pytest.mark.exhaustive
-def test_fifty_gradings_under_load_are_one(tmp_path: Path) -> None:
+def test_fifty_gradings_under_load_have_the_same_report(tmp_path: Path) -> None:
     with busy(4):
         reports = [graded(tmp_path) for _ in range(50)]
     assert all(report == reports[0] for report in reports)

@@ -96,7 +96,7 @@ def graded(trials: Trials, at_once: int, build: Any, more: bytes = b"") -> Grade
 
 
 @pytest.mark.parametrize(("at_once", "begun"), [(2, 4), (1, 1)])
-def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int) -> None:
+def test_all_trials_are_started_if_they_may_run_in_parallel(at_once: int, begun: int) -> None:
     trials = Trials()
     observed = []
 

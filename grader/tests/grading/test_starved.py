@@ -112,7 +112,7 @@ def test_a_trial_that_fails_on_a_busy_machine_is_made_again_alone_and_the_one_th
     assert trials.alone == [False, True]
 
 
-def test_the_first_that_fails_undisturbed_is_believed() -> None:
+def test_the_first_trial_that_fails_undisturbed_counts() -> None:
     trials = Trials([crowded(WRONG), WRONG])
     found = graded(trials)
     assert Status.FAILED in statuses(found)

@@ -100,7 +100,7 @@ def test_two_that_both_want_it_alone_get_it_one_after_the_other(tmp_path: Path) 
             assert [hears(process), hears(process), hears(process)] == ["shared", "alone", "done"]
 
 
-def test_who_is_killed_lets_go(tmp_path: Path) -> None:
+def test_a_killed_grader_releases_the_machine(tmp_path: Path) -> None:
     with other(tmp_path, "alone") as killed:
         assert [hears(killed), hears(killed)] == ["shared", "alone"]
         killed.kill()

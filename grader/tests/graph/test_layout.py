@@ -116,7 +116,7 @@ def test_a_png_is_a_picture_of_the_same_shape() -> None:
     assert png.height == pytest.approx(2 * height, abs=4)
 
 
-def test_what_is_no_dot_is_an_error_of_ours() -> None:
+def test_invalid_dot_is_a_machine_error() -> None:
     with pytest.raises(MachineError, match="could not be drawn"):
         render("digraph {", "svg")
 

@@ -41,7 +41,7 @@ REST = "The code is the same in __init__ and the lines outside functions."
         ("", "Your work does not contain this file, or the file is empty or not UTF-8."),
     ],
 )
-def test_it_is_said_in_words(theirs: str, said: str) -> None:
+def test_each_difference_has_its_sentence(theirs: str, said: str) -> None:
     assert difference(theirs, OURS, "node.py") == said
 
 

@@ -87,7 +87,7 @@ def test_a_folder_that_names_no_step_asks_for_a_step(tmp_path: Path) -> None:
         program_of(str(tmp_path), None, tmp_path / "no_ws")
 
 
-def test_it_says_what_colcon_says(learner: Learner) -> None:
+def test_a_failed_build_shows_the_messages_of_colcon(learner: Learner) -> None:
     setup = learner.home / "ros2_ws/src/my_robot_controller/setup.py"
     right = setup.read_text("utf-8")
     setup.write_text(right.replace("setup(", "setup((", 1), "utf-8")

@@ -100,7 +100,7 @@ def test_changed_modules_are_graded_without_colcon(
     assert not watched.changed()
 
 
-def test_causes_are_proved_after_the_verdict_unless_something_else_waits(package: Path, watched: Watched) -> None:
+def test_causes_are_confirmed_after_the_verdict_unless_something_else_waits(package: Path, watched: Watched) -> None:
     assert failed(watched) == []
     assert watched.prove(ignored, lambda: False) is None
     change(node_of(package), "create_timer(0.5", "create_timer(0.05")
@@ -126,7 +126,7 @@ def test_causes_are_proved_after_the_verdict_unless_something_else_waits(package
         pytest.param(False, True, id="pipe-a list", marks=pytest.mark.exhaustive),
     ],
 )
-def test_the_screen_shows_a_proof_when_it_is_there(package: Path, terminal: bool, asked: bool) -> None:
+def test_the_screen_shows_a_confirmed_cause_as_soon_as_it_is_known(package: Path, terminal: bool, asked: bool) -> None:
     change(node_of(package), "create_timer(0.5", "create_timer(0.05")
     console = Console(file=io.StringIO(), width=200, height=60, force_terminal=terminal, color_system=None)
     screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=bubblewrap.usable()), console)

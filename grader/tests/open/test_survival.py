@@ -109,7 +109,7 @@ def test_ctrl_c_during_a_grading_leaves_nothing(own: Course) -> None:
         until_gone(child)
 
 
-def test_the_way_from_another_machine_is_one_line() -> None:
+def test_the_command_for_another_machine_is_one_line() -> None:
     assert elsewhere(4711, {}) == []
     (line,) = elsewhere(4711, {"SSH_CONNECTION": "10.0.0.2 50000 10.0.0.9 22"})
     assert "ssh -N -L 4711:127.0.0.1:4711 " in line

@@ -57,7 +57,7 @@ def test_a_cause_is_a_fact_if_files_an_exception_or_a_try_show_it(outcome: Outco
     assert cause_sentence(outcome) == ("The reason." if label == "why" else "Likely cause: The reason.")
 
 
-def test_every_diagnosis_is_a_fact_or_a_possibility_that_a_try_can_prove() -> None:
+def test_every_diagnosis_is_a_fact_or_a_possibility_that_a_try_can_confirm() -> None:
     assert set(DIAGNOSES) >= FACTS
     for diagnosis in DIAGNOSES:
         label = "why" if diagnosis in FACTS else "likely"

@@ -100,7 +100,7 @@ def test_a_failed_check_without_points_is_a_warning(made: Report, verdict: str, 
         ("error", "Not finished: 12 checks could not be judged. 0 of 100 points so far."),
     ],
 )
-def test_each_verdict(status: str, verdict: str) -> None:
+def test_each_status_has_its_verdict(status: str, verdict: str) -> None:
     assert verdict in reported(report(status)).splitlines()
 
 

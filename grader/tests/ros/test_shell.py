@@ -87,13 +87,13 @@ def test_a_user_without_a_home_in_the_environment_gets_the_one_of_the_system(env
     assert installation.users_environment(HERE, env)["HOME"] == own
 
 
-def test_how_messages_travel_stays_the_users() -> None:
+def test_the_users_settings_of_fast_dds_stay() -> None:
     theirs = {"FASTRTPS_DEFAULT_PROFILES_FILE": "/home/me/fast.xml", "FASTDDS_BUILTIN_TRANSPORTS": "SHM"}
     assert theirs.items() <= users(theirs).items()
 
 
 @pytest.mark.parametrize("domain", [-1, 102])
-def test_there_is_no_such_domain(domain: int) -> None:
+def test_an_invalid_domain_is_a_usage_error(domain: int) -> None:
     with pytest.raises(UsageError, match="from 0 to 101"):
         shell.users_environment(domain, lambda _: None)
 
@@ -108,7 +108,7 @@ def test_colcons_scripts_get_a_python_without_a_space_in_its_path(home: str, tmp
     assert env.get("COLCON_PYTHON_EXECUTABLE") == (None if home == "home" else str(python.resolve()))
 
 
-def test_what_every_node_needs_is_in_it() -> None:
+def test_the_environment_has_what_every_node_needs() -> None:
     env = users({}, ros=WHEELS)
     assert env["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
     assert env["ROS_PYTHON_CHECK_FIELDS"] == "1"

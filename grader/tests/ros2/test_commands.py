@@ -221,7 +221,7 @@ def test_what_is_published_arrives(still: World) -> None:
     echo.stop()
 
 
-def test_the_last_message_is_kept_for_who_comes_later(still: World) -> None:
+def test_echo_gets_the_last_message_of_a_transient_local_publisher(still: World) -> None:
     # A transient local publisher sends its last message to a late subscription.
     keeper = still.start(f"python3 -c '{KEEPS}'", "published")
     assert still.run("ros2 topic echo --once /kept").stdout == "data: old news\n---\n"

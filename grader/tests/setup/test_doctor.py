@@ -198,7 +198,7 @@ def test_a_node_that_is_not_heard_without_a_cell_is_reported(monkeypatch: pytest
     assert (line.state, "no message arrived" in line.observed) == ("broken", True)
 
 
-def test_one_core_is_not_several(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_core_is_in_the_singular(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     assert doctor.look_at_system().observed.endswith(", 1 core")
 

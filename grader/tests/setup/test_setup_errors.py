@@ -56,7 +56,7 @@ def test_a_certificate_that_only_uv_does_not_trust_is_left_to_pip() -> None:
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a folder to another user")
 @pytest.mark.parametrize(("owner", "reported"), [(0, "Type sudo chown -R 12345:"), (12345, "copy the course's folder")])
-def test_what_sudo_make_has_left_behind_is_given_back(
+def test_files_of_root_after_sudo_make_are_reported_with_the_command_that_helps(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, owner: int, reported: str
 ) -> None:
     (tmp_path / ".venv").mkdir()
@@ -97,7 +97,7 @@ def test_words_of_a_missing_network_are_found() -> None:
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EMFILE, errno.ENOMEM, errno.EAGAIN])
-def test_what_the_system_refuses_the_set_up_is_a_sentence(number: int) -> None:
+def test_a_failed_system_call_of_the_set_up_is_reported_in_one_sentence(number: int) -> None:
     code = "import sys; from grader.setup import setup_errors\ndef main(): raise OSError({}, 'x', '/course')\n"
     done = subprocess.run(
         [sys.executable, "-c", code.format(number) + "sys.exit(setup_errors.guarded(main))"],
@@ -110,7 +110,7 @@ def test_what_the_system_refuses_the_set_up_is_a_sentence(number: int) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_a_full_disk_behind_standard_output_is_a_sentence() -> None:
+def test_a_full_disk_behind_standard_output_is_reported_in_one_sentence() -> None:
     code = "import sys; from grader.setup import setup_errors; sys.exit(setup_errors.guarded(lambda: print('x') or 0))"
     root = Path(setup_errors.__file__).parents[2]
     with Path("/dev/full").open("w") as full:

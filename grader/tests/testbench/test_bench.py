@@ -80,7 +80,7 @@ def test_a_run_cannot_look_into_the_session(files: dict[str, bytes]) -> None:
         "import os\nos.write(int(os.environ['GRADER_TESTBENCH'].split()[0]), b'x' * 27 * 100)\nos._exit(0)\n",
     ],
 )
-def test_a_lie_is_the_same_for_every_node(code: str, files: dict[str, bytes]) -> None:
+def test_a_forged_report_gets_the_same_verdict_on_every_node(code: str, files: dict[str, bytes]) -> None:
     runs = run(spec("rate", "stop"), {**files, TESTS: code.encode()})
     assert verdicts(runs) == {"": True, "rate": True, "stop": True}
 

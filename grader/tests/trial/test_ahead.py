@@ -174,7 +174,7 @@ def test_a_node_that_brings_its_simulator_down_is_reported_to_the_caller(ahead: 
             own.run("package", "node", b"")
 
 
-def test_settled_is_when_none_is_under_way(ahead: Ahead) -> None:
+def test_the_trials_are_settled_when_none_is_running(ahead: Ahead) -> None:
     goes_on, ended = threading.Event(), threading.Event()
 
     def waits() -> Recording:

@@ -82,7 +82,7 @@ def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:
     assert [patience.ended(now_s) for now_s in (0.1, 0.11, 0.2, 0.21, 0.3)] == [False, False, False, False, True]
 
 
-def test_whoever_only_wakes_and_sleeps_ends_it_by_time() -> None:
+def test_a_node_that_only_wakes_and_sleeps_ends_patience_by_time() -> None:
     patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.0)), 0.0)
     assert [patience.ended(now_s) for now_s in (TICK_S - 1.0, TICK_S + 1.0)] == [False, True]
 

@@ -40,7 +40,7 @@ def poses_of(inputs: Path) -> Path:
 # --- recordings ---------------------------------------------------------------------------------------------------
 
 
-def test_there_are_recordings() -> None:
+def test_all_recordings_are_found() -> None:
     assert len(RECORDINGS) == 8
 
 

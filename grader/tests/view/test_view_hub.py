@@ -117,7 +117,7 @@ def test_the_whole_is_written_once_for_all_pages() -> None:
     assert system.wholes == 1
 
 
-def test_a_page_that_is_gone_is_followed_no_more() -> None:
+def test_a_closed_page_is_no_longer_followed() -> None:
     async def run() -> int:
         system = System()
         following = asyncio.create_task(system.hub.follow(Page().send))

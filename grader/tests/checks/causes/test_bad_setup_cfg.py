@@ -29,7 +29,7 @@ RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib
         ),
     ],
 )
-def test_the_line_and_the_reason(data: bytes, cause: str, where: str) -> None:
+def test_an_invalid_setup_cfg_is_reported_with_its_line_and_the_reason(data: bytes, cause: str, where: str) -> None:
     found = why_setup_cfg_unreadable(data)
     assert found is not None
     assert str(found.where) == where
@@ -40,5 +40,5 @@ def test_the_line_and_the_reason(data: bytes, cause: str, where: str) -> None:
 @pytest.mark.parametrize(
     "data", [b"", RIGHT.encode(), f"{RIGHT}Install_scripts=x\n".encode(), f"# f\xfcr\n{RIGHT}".encode()]
 )
-def test_a_file_that_can_be_read_has_none(data: bytes) -> None:
+def test_a_readable_setup_cfg_has_no_reason(data: bytes) -> None:
     assert why_setup_cfg_unreadable(data) is None

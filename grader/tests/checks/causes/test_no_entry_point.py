@@ -42,11 +42,7 @@ def setup_py(instead: str, more: str = "") -> Files:
             "setup.py has no entry point with this name.",
         ),
         (
-            {
-                **setup_py('            "go = my_robot_controller.circle:main",\n'),
-                NODE_FILE: None,
-                OTHER: NODE,
-            },
+            {**setup_py('            "go = my_robot_controller.circle:main",\n'), NODE_FILE: None, OTHER: NODE},
             "entry-point-missing",
             "setup.py:13",
             "setup.py has no entry point with this name.",
@@ -98,14 +94,13 @@ def test_another_group_is_shown_at_its_line() -> None:
     assert "has the group" not in found({"setup.py": both}).cause
 
 
-def test_comments_that_are_no_entry_point_are_none() -> None:
+def test_only_a_comment_with_the_entry_point_counts_as_commented_out() -> None:
     for comment in ("draw_circle is to come", "x = draw_circle", "draw_circle_2 = my_robot_controller.a:main"):
         assert found(setup_py(f"            # {comment}\n")).diagnosis == "entry-point-missing"
-    text = '            "# draw_circle = in a text",\n'
-    assert found(setup_py(text)).diagnosis != "entry-point-commented"
+    assert found(setup_py('            "# draw_circle = in a text",\n')).diagnosis != "entry-point-commented"
     assert found(setup_py("            # draw_circle =\n")).diagnosis == "entry-point-commented"
-    twice = found(setup_py("            # draw_circle = my_robot_controller.draw_circle:main = x\n"))
-    assert twice.diagnosis == "entry-point-commented"
+    twice = "            # draw_circle = my_robot_controller.draw_circle:main = x\n"
+    assert found(setup_py(twice)).diagnosis == "entry-point-commented"
 
 
 @pytest.mark.parametrize(
@@ -244,12 +239,12 @@ def test_a_module_is_similar_only_if_its_folder_and_its_own_name_are(file: str, 
     assert words in got.cause
 
 
-def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:
+def test_a_module_that_is_neither_installed_nor_linked_is_reported() -> None:
     bare = replace(BUILD, installed=("share/my_robot_controller/package.xml",))
     got = found({}, bare)
     assert (got.diagnosis, str(got.where)) == ("module-not-installed", "setup.py:14")
-    linked = replace(bare, installed=("lib/python3.11/site-packages/my-robot-controller.egg-link",))
-    assert found({}, linked).status is Status.PASSED
+    link = "lib/python3.11/site-packages/my-robot-controller.egg-link"
+    assert found({}, replace(bare, installed=(link,))).status is Status.PASSED
 
 
 @pytest.mark.parametrize(
@@ -276,7 +271,7 @@ def test_a_file_without_the_function_is_shown_what_it_has(text: str, diagnosis: 
     "text",
     ["main: object = print\n", "try:\n    pass\nfinally:\n    def main():\n        pass\n", "def main(): pass\n"],
 )
-def test_what_may_be_called_is_enough(text: str) -> None:
+def test_an_entry_point_may_lead_to_anything_callable(text: str) -> None:
     assert found({NODE_FILE: text}, BUILD).status is Status.PASSED
 
 

@@ -76,7 +76,7 @@ def test_a_message_made_without_parentheses_is_reported_where_it_was_made() -> N
     assert "geometry_msgs.msg.Twist is a class." in found.cause
 
 
-def test_a_class_that_was_made_nowhere_is_reported_where_it_crashed() -> None:
+def test_a_class_that_no_line_assigns_is_reported_where_it_crashed() -> None:
     found = reported(
         "count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'"
     )

@@ -164,7 +164,7 @@ def test_the_truth_is_the_graph_as_it_was_recorded(answer: str, values: dict[str
         ('"/bills"', {"connected_to": "/waiter"}, True),
     ],
 )
-def test_no_answer_is_called_wrong_for_a_graph_without_a_right_one(
+def test_an_answer_is_not_judged_if_the_graph_has_no_right_answer(
     answer: str, values: dict[str, str], *, judged_too: bool
 ) -> None:
     finding = judged(GRAPH, answer, find="topic", among="publisher", **values)
@@ -208,7 +208,7 @@ def test_without_messages_there_is_no_rate_to_compare_with() -> None:
     assert words not in judged(RATE, "4", type_ends="/String").observed
 
 
-def test_an_answer_of_any_length_makes_a_short_message() -> None:
+def test_a_long_answer_is_shortened_in_the_message() -> None:
     finding = judged(TEXT, f'"{"x" * 5000}"', accepts=("left",))
     assert len(finding.observed) < 200
 

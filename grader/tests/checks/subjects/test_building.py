@@ -72,7 +72,9 @@ NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or 
         ({}, replace(NOTHING, installed=()), "nothing-installed", "setup.py:7"),
     ],
 )
-def test_each_fault_of_the_build(files: Files, build: Build, diagnosis: str, where: str) -> None:
+def test_each_fault_of_the_build_has_its_diagnosis_and_place(
+    files: Files, build: Build, diagnosis: str, where: str
+) -> None:
     found = of("build", files, build)
     assert (found.status, found.diagnosis, str(found.where)) == (Status.FAILED, diagnosis, where)
 

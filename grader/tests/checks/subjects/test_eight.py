@@ -33,7 +33,7 @@ def test_the_requested_radius_of_the_lobes_is_not_rounded() -> None:
     assert wide.observed == "The turtle drove a figure eight with radius 1.25 m."
 
 
-def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
+def test_a_figure_eight_passes_from_any_start() -> None:
     for start in (None, Pose(4.0, 6.5, 2.2)):
         assert eight(lobe(1), lobe(-1), start=start).observed == "The turtle drove a figure eight with radius 1.0 m."
 
@@ -48,7 +48,7 @@ def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
         (360.0, 200.0, "wall", "lobe-angle"),
     ],
 )
-def test_a_first_lobe_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened(
+def test_in_wall_time_a_first_lobe_without_its_beginning_was_begun_before_discovery(
     first: float, second: float, clock: str, diagnosis: str
 ) -> None:
     observed = recording(legs(lobe(1, degrees=first), lobe(-1, degrees=second)), clock=clock)
@@ -120,7 +120,7 @@ def test_either_side_may_come_first_where_the_exercise_allows_it() -> None:
     assert eight(lobe(-1), lobe(1), first="either").status is Status.PASSED
 
 
-def test_a_trajectory_that_was_driven_by_other_means_is_none() -> None:
+def test_a_trajectory_with_an_intervention_fails() -> None:
     moved = teleported(recording(legs(lobe(1), lobe(-1))))
     assert found(EIGHT, evidence(moved), radius_m=1.0).diagnosis == "intervention"
     assert found(EIGHT, evidence(recording(every(0.5, math.nan, 1.0))), radius_m=1.0).status is Status.FAILED

@@ -112,7 +112,7 @@ def test_a_setup_cfg_that_is_there_is_a_place_to_look() -> None:
         "import other as main\n",
     ],
 )
-def test_anything_that_may_be_called_will_do(text: str) -> None:
+def test_an_entry_point_may_name_anything_callable(text: str) -> None:
     assert of("entry-point", {NODE_FILE: text}).status is Status.PASSED
 
 

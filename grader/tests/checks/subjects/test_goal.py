@@ -27,7 +27,7 @@ def goal(*parts: Leg, start: Pose = START, stops: bool = True, code: str = "GOAL
 
 
 @pytest.mark.parametrize("length_m", [4.0, 3.95, 4.05])
-def test_whoever_stops_near_enough_has_arrived(length_m: float) -> None:
+def test_a_turtle_that_stops_within_the_tolerance_has_arrived(length_m: float) -> None:
     finding = goal(ahead(length_m))
     assert (finding.status, finding.observed) == (
         Status.PASSED,
@@ -128,7 +128,7 @@ def test_a_node_that_stops_somewhere_else_has_another_goal() -> None:
     assert "the position of the goal" not in goal(ahead(3.0), stops=False, code=other).cause
 
 
-def test_a_turtle_at_the_wall_learns_about_angles() -> None:
+def test_the_cause_for_a_turtle_that_drives_into_a_wall_mentions_angles() -> None:
     finding = goal((10, 0.0, -QUARTER / 3), ahead(6.0), start=Pose(1.0, 1.0, 0.0), stops=False)
     assert (finding.diagnosis, "atan2(sin(error), cos(error))" in finding.cause) == ("not-there", True)
 

@@ -21,7 +21,9 @@ from grader.tests.checks.node_log import HELLO, LOGS, hello
         ((3, 2, 1), "counter-step", "The number after 3 is 2."),
     ],
 )
-def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, observed: str) -> None:
+def test_each_counter_has_its_diagnosis_and_place(
+    numbers: tuple[int, ...], diagnosis: str | None, observed: str
+) -> None:
     trial = recording([], log=hello(*numbers))
     finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
     assert (finding.diagnosis, finding.observed) == (diagnosis, observed)
@@ -37,7 +39,7 @@ def test_the_place_of_a_counter_is_the_line_that_logs_it() -> None:
     assert str(found(LOG_COUNTER, given, format=HELLO, counts="counter").where) == f"{NODE_FILE}:{line}"
 
 
-def test_one_line_counts_nothing_and_two_do() -> None:
+def test_one_line_is_too_few_for_a_counter_and_two_are_enough() -> None:
     for log, diagnosis in ((hello(0), "too-few-log-lines"), (hello(0, 1), None)):
         trial = recording([], log=log)
         finding = found(LOG_COUNTER, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO, counts="counter")

@@ -70,7 +70,7 @@ def test_what_is_a_second_old_or_half_a_second_ahead_is_wrong() -> None:
     assert position(truth(-0.5)).diagnosis == "wrong-position"
 
 
-def test_lines_after_the_last_frame_speak_of_that() -> None:
+def test_a_line_after_the_last_frame_is_compared_with_the_last_frame() -> None:
     trial = logged(truth())
     short = replace(trial, frames=frames(trial.commands, trial.start, 7.0))
     x, y = short.frames.x[-1], short.frames.y[-1]
@@ -118,7 +118,7 @@ def test_each_other_number_fails_for_its_own_reason(name: str) -> None:
     assert finding.cause
 
 
-def test_says_what_the_line_said_and_what_was_so() -> None:
+def test_a_wrong_line_is_reported_with_the_true_values() -> None:
     x, y, driven_m = truth()
     finding = position((x + 1.0, y, driven_m))
     assert finding.observed == (

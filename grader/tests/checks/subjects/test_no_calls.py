@@ -115,7 +115,7 @@ def test_another_file_behind_another_does_not_hide_it() -> None:
         ),
     ],
 )
-def test_what_is_not_used_is_not_held_against_anybody(text: str, helper: str) -> None:
+def test_code_that_does_not_call_a_forbidden_function_passes(text: str, helper: str) -> None:
     assert used(text, helper=helper)[0] is Status.PASSED
 
 

@@ -21,7 +21,7 @@ def circle(shape: str) -> Finding:
 @pytest.mark.parametrize(
     "shape", ["good", "good elsewhere", "late", "uneven", "one hertz", "four hertz", "more after Ctrl-C"]
 )
-def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
+def test_a_circle_passes_at_any_rate(shape: str) -> None:
     found = circle(shape)
     assert (found.status, found.diagnosis) == (Status.PASSED, None)
     assert found.observed == "The turtle drove a circle of radius 2.0 m, counter-clockwise, for at least 1 turn."
@@ -148,7 +148,7 @@ def test_the_requested_radius_is_not_rounded() -> None:
     assert found.expected == "The turtle drives a circle of radius 1.25 m, counter-clockwise, for at least 1 turn."
 
 
-def test_commands_that_differ_ask_for_no_size() -> None:
+def test_commands_that_differ_give_no_cause_for_the_size() -> None:
     commands = [(t_s, 5.0 + t_s, 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
     found = finding("circle", evidence(recording(commands)))
     assert (found.diagnosis, found.cause) == ("wall", "")
@@ -157,7 +157,7 @@ def test_commands_that_differ_ask_for_no_size() -> None:
     assert (short.diagnosis, short.cause) == ("too-short", "")
 
 
-def test_a_large_circle_is_one_and_a_huge_one_is_straight() -> None:
+def test_a_radius_of_45_m_is_a_circle_and_one_of_60_m_is_a_straight_line() -> None:
     for radius_m, diagnosis in ((45.0, "wrong-radius"), (60.0, "straight-line")):
         found = finding("circle", evidence(recording(every(0.5, 0.5, 0.5 / radius_m), start=Pose(1.0, 5.0, 0.0))))
         assert found.diagnosis == diagnosis
@@ -178,7 +178,9 @@ def test_a_turtle_that_hardly_turns_is_told_that_it_turns_too_little(turns_rad_s
         (0.0, 0.009, "not-moving"),
     ],
 )
-def test_how_little_is_nothing(linear: float, angular: float, diagnosis: str) -> None:
+def test_slow_turtles_drive_straight_turn_on_the_spot_or_stand_still(
+    linear: float, angular: float, diagnosis: str
+) -> None:
     found = finding("circle", evidence(recording(every(0.5, linear, angular))))
     assert found.diagnosis == diagnosis
 
@@ -219,7 +221,7 @@ def test_a_turtle_that_hardly_turns_stands_still_though_not_every_command_is_zer
     assert circle("all zero").cause == "linear.x and angular.z are 0 in every command."
 
 
-def test_points_at_the_line_that_turns() -> None:
+def test_a_wrong_direction_is_reported_at_the_line_that_sets_the_turning_speed() -> None:
     assert str(circle("clockwise").where) == "my_robot_controller/draw_circle.py:15"
     keywords = node(("msg = Twist()", "msg = Twist(angular=Vector3(z=-1.0))"), ("        msg.angular.z = 1.0\n", ""))
     found = finding("circle", evidence(SHAPES["clockwise"](), keywords))

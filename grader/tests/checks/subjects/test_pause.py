@@ -32,7 +32,7 @@ def test_a_turtle_stands_still_and_goes_on(rest: tuple[float, float], diagnosis:
     assert finding.diagnosis == diagnosis
 
 
-def test_a_turtle_that_hears_nothing_rolls_on() -> None:
+def test_a_pause_without_a_stop_command_is_reported() -> None:
     commands = [each for each in every(0.1, 1.0, 1.0) if not 3.0 <= each[0] < 6.0]
     assert found(PAUSE, evidence(recording(commands)), from_s=3.0, until_s=6.0).diagnosis == "no-stop-command"
 

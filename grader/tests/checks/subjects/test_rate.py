@@ -65,7 +65,7 @@ def test_an_uneven_rhythm_names_the_worst_interval() -> None:
     assert found.observed.startswith("Commands arrived at uneven intervals: 0.71 s passed between two of them")
 
 
-def test_three_commands_are_a_rate() -> None:
+def test_three_commands_that_stop_early_are_reported_as_such() -> None:
     three = finding("rate", evidence(recording(every(0.5, 2.0, 1.0, until_s=1.7))))
     assert (three.diagnosis, three.observed) == (
         "stopped-early",
@@ -214,7 +214,7 @@ def test_what_was_sent_before_the_clock_started_is_in_no_interval(arrives_s: flo
     assert (found.status, found.near_edge) == (Status.PASSED, False)
 
 
-def test_what_was_only_sent_before_the_two_sides_found_each_other_is_as_if_it_had_been_lost() -> None:
+def test_commands_before_the_clock_started_count_as_lost() -> None:
     heard, lost = evidence(recording([(0.0, 2.0, 1.0)] * 3)), evidence(recording([]))
     assert finding("topic", heard) == finding("topic", lost)
     assert finding("topic", heard).diagnosis == "never-publishes"

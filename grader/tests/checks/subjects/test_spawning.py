@@ -56,7 +56,7 @@ def test_wrong_numbers_names_and_places_are_named(calls: list[Call], expected: s
     ("calls", "gone"),
     [([catch()], {}), ([catch(), kill("")], {}), ([catch(), kill("target3")], {"target3": CAUGHT_S})],
 )
-def test_who_was_caught_must_be_removed_and_nobody_else(calls: list[Call], gone: dict[str, float]) -> None:
+def test_a_caught_target_that_was_not_removed_is_reported(calls: list[Call], gone: dict[str, float]) -> None:
     assert diagnosis(of_removes(given(calls=calls, gone=gone))) == "not-killed"
 
 
@@ -74,7 +74,7 @@ def test_the_end_of_a_node_is_the_cause_even_if_its_response_got_lost() -> None:
     assert diagnosis(of_removes(given(calls=[unanswered], gone={}))) == "no-response"
 
 
-def test_who_was_not_caught_must_stay() -> None:
+def test_a_target_that_was_removed_without_being_caught_is_reported() -> None:
     removed = of_removes(
         given(calls=[catch(), kill("target2"), kill("target3")], gone={"target2": CAUGHT_S, "target3": CAUGHT_S})
     )

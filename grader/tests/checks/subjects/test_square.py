@@ -56,7 +56,7 @@ def test_the_requested_length_of_a_side_is_not_rounded() -> None:
     ],
 )
 @pytest.mark.parametrize("start", [None, Pose(6.0, 5.0, 1.2)])
-def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
+def test_a_square_passes_in_each_allowed_form(parts: list[Leg], start: Pose | None) -> None:
     assert square(parts, start).observed == "The turtle drove a square with sides of 2.0 m."
 
 
@@ -108,7 +108,7 @@ def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
     assert square(left, direction="clockwise").diagnosis == "wrong-direction"
 
 
-def test_a_trajectory_that_was_driven_by_other_means_is_none() -> None:
+def test_a_trajectory_with_an_intervention_fails() -> None:
     moved = teleported(recording(legs(*round_())), name="teleport_relative")
     assert found(SQUARE, evidence(moved), side_m=2.0).diagnosis == "intervention"
 
@@ -149,7 +149,7 @@ def test_only_by_wall_time_can_the_first_commands_be_lost(clock: str, *, lost: b
     assert (words in found(SQUARE, observed, side_m=2.0).cause) == lost
 
 
-def test_a_first_side_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened() -> None:
+def test_in_wall_time_a_first_side_without_its_beginning_was_begun_before_discovery() -> None:
     assert too_soon((1.7, 2.0, 2.0, 2.0)) == "too-soon"
     for others in ((2.3, 2.0, 2.0, 2.0), (1.7, 2.0, 2.0, 1.6), (2.0, 1.7, 2.0, 2.0)):
         assert too_soon(others) == "side-length"

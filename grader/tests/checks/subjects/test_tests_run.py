@@ -54,7 +54,7 @@ def test_tests_that_pass_only_sometimes_are_named(order: tuple[NodeRun, ...]) ->
     assert f"in {order.count(GOOD)} of 3 runs" in finding.observed
 
 
-def test_a_missing_run_on_the_right_node_is_no_pass() -> None:
+def test_a_missing_run_on_the_right_node_does_not_pass() -> None:
     """No further run starts after two runs that hung, so runs on the correct node can be missing."""
     hung = NodeRun("stop", None, over=True)
     assert passes(GOOD, hung, dataclasses.replace(hung, node="rate")).diagnosis == "test-hangs"

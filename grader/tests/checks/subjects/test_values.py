@@ -119,7 +119,7 @@ def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
 
 @pytest.mark.parametrize("field", range(6))
 @pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf, 2e-6, -2e-6])
-def test_every_field_counts(field: int, wrong: float) -> None:
+def test_a_wrong_value_in_any_field_fails(field: int, wrong: float) -> None:
     six = [2.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     six[field] += wrong
     found = finding("values", evidence(fields((six[0], six[1], six[2]), (six[3], six[4], six[5]))))
@@ -136,7 +136,7 @@ def test_rounding_never_hides_the_difference() -> None:
     ("off", "near", "status"),
     [(0.0, False, "passed"), (0.9e-6, True, "passed"), (1.1e-6, True, "failed"), (1.3e-6, False, "failed")],
 )
-def test_near_the_edge(off: float, near: bool, status: str) -> None:
+def test_a_value_near_the_edge_of_its_tolerance_is_marked(off: float, near: bool, status: str) -> None:
     found = finding("values", evidence(recording(every(0.5, 2.0 + off, 1.0))))
     assert (found.near_edge, found.status.value) == (near, status)
 

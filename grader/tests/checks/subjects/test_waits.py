@@ -43,7 +43,7 @@ def test_a_wait_in_a_callback_fails_at_its_line(line: str, diagnosis: str, words
     assert words in finding.cause
 
 
-def test_the_files_alone_show_it() -> None:
+def test_a_wait_is_found_before_the_build_unless_the_node_has_threads() -> None:
     source = NODE.replace("        msg = Twist()", f"{WAITS}\n        msg = Twist()")
     early = NEVER_WAITS.judge_early(evidence(None, submission({NODE_FILE: source})), {})
     assert early is not None
