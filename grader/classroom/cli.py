@@ -16,7 +16,7 @@ from grader.exercise.completion import steps as known_steps
 PANEL = "Teach"
 """The heading of these commands in --help."""
 
-gradescope = App(name="gradescope", help="Grade with Gradescope.", no_args_is_help=True)
+gradescope = App(name="gradescope", help="Create an autograder for Gradescope.", no_args_is_help=True)
 
 
 class Clock(str, Enum):

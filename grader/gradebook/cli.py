@@ -10,8 +10,8 @@ import typer
 from grader.classroom.cli import PANEL
 from grader.common.command_help import App
 
-gradebook = App(name="gradebook", help="Grade the notebooks of a class and compare their scores.", no_args_is_help=True)
-classes = App(name="class", help="Manage a class that hands in notebooks.", no_args_is_help=True)
+gradebook = App(name="gradebook", help="Grade a class that uses nbgrader, and compare scores.", no_args_is_help=True)
+classes = App(name="class", help="Create a class that uses nbgrader.", no_args_is_help=True)
 kernel = App(name="kernel", help="Install the course's kernel for Jupyter.", no_args_is_help=True)
 
 
