@@ -65,7 +65,7 @@ class Stamp(NamedTuple):
 
 
 def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
-    """Return the stamp of a finished set-up, or None if there is no stamp from this version."""
+    """Return the stamp of a finished set-up, or None if there is no stamp with these fields."""
     try:
         return Stamp(**json.loads(path.read_text()))
     except (OSError, ValueError, TypeError):
@@ -101,7 +101,7 @@ def digest() -> str:
 def outdated(error: BaseException) -> Optional[str]:
     """Return a sentence that says that the course has changed since its set-up, if `error` is a failed import.
 
-    If it is another error, or if nothing has changed, return None.
+    Return None for any other error, if there is no stamp, or if nothing has changed.
     """
     stamp = read_stamp()
     if not isinstance(error, ImportError) or stamp is None or stamp.digest == digest():
@@ -111,7 +111,10 @@ def outdated(error: BaseException) -> Optional[str]:
 
 
 def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:
-    """Return whether .venv is still usable: at the same path, for this ROS 2, and with the Python that created it."""
+    """Return whether .venv is still usable: at the same path, for this ROS 2, and with the Python that created it.
+
+    If a Python was requested (`wanted`), it must be this Python.
+    """
     now = machine.probe(str(PYTHON))
     same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
     if not same or stamp.root != str(ROOT) or (wanted is not None and wanted.path != stamp.python):
@@ -204,7 +207,7 @@ def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def requested_python(name: str) -> machine.Python:
-    """Return the interpreter with this name. Raises ArgumentTypeError if the interpreter does not run."""
+    """Return the interpreter with this name or path. Raises ArgumentTypeError if the interpreter does not run."""
     python = machine.probe(shutil.which(name) or name)
     if python is None:
         message = f"{name} is not a Python that runs on this machine"

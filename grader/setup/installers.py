@@ -39,8 +39,8 @@ def environment(env: Mapping[str, str]) -> Dict[str, str]:
 def of_configuration(env: Mapping[str, str]) -> Dict[str, str]:
     """Return, as environment variables, the settings in pip's configuration files that the installers may use.
 
-    With PIP_CONFIG_FILE=/dev/null, pip ignores its configuration files. These files can also contain settings that
-    `environment` removes.
+    The set-up runs pip with PIP_CONFIG_FILE=/dev/null, because these files can also contain settings that `environment`
+    would remove.
     """
     read = RawConfigParser()
     for file in configuration_files(env):

@@ -128,8 +128,8 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
     """Return whether the machine has no route to a network, so that no packages can be downloaded.
 
-    The result is False if a mirror, a proxy or a folder of wheels is configured. `root` is the folder that contains
-    proc/.
+    The result is False if a variable or a configuration file for pip, uv or a proxy exists, since it may name a mirror
+    or a folder of wheels. `root` is the folder that contains proc/.
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))

@@ -50,7 +50,10 @@ _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
 def guarded(main: Callable[[], int]) -> int:
-    """Run a program of the set-up and return its exit code. Print system errors and Ctrl-C as one message."""
+    """Run a program of the set-up and return its exit code. Report exceptions and Ctrl-C in one message.
+
+    With GRADER_DEBUG, exceptions are raised instead.
+    """
     try:
         code = main()
         sys.stdout.flush()

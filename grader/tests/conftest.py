@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-# No program of the user and no other test process uses this domain.
+# No other test process uses this domain.
 os.environ["ROS_DOMAIN_ID"] = str(default_domain())
 # A daemon would keep running after the test that started it.
 os.environ["GRADER_ROS2_DAEMON"] = "0"
