@@ -46,7 +46,10 @@ def test_the_packages_that_cases_are_laid_over_are_right() -> None:
 
 @cache
 def closest() -> dict[str, int]:
-    """Map each diagnosis to the smallest number of lines in which one of its cases differs from its base."""
+    """Map each diagnosis to the number of lines in which one of its cases differs from its base.
+
+    If a case differs in at most MOST_LINES, later cases of the same diagnoses need not be compared.
+    """
     found: dict[str, int] = {}
     bases: dict[str, dict[str, list[str]]] = {}
     with TemporaryDirectory() as name:

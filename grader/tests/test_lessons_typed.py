@@ -31,7 +31,7 @@ SIM = "grader sim --view"
 
 @dataclass(frozen=True)
 class Typed:
-    """A command, a regular expression for its output, whether it runs until Ctrl-C, and what gets Ctrl-C before it."""
+    """A command, a regular expression for its output, whether it runs until Ctrl-C, and the commands to stop first."""
 
     command: str
     shows: str

@@ -165,7 +165,10 @@ def names_an_interpreter(node: ast.AST) -> bool:
 
 
 def is_harmless(node: ast.AST, tree: ast.Module) -> bool:
-    """Return whether the expression is passed to interpreter() or to a Ros object, or only locates our own commands."""
+    """Return whether the expression is harmless.
+
+    It is assigned to `python`, is passed to interpreter() or a Ros object, or only locates our own commands.
+    """
     for outer in ast.walk(tree):
         if isinstance(outer, ast.Assign) and ast.unparse(outer.targets[0]) == "python" and node in ast.walk(outer):
             return True

@@ -40,10 +40,7 @@ class Killer:
         self.struck: list[Blow] = []
 
     def until_struck(self, blows: list[Blow], within_s: float) -> None:
-        """Interrupt the run once with each of these methods.
-
-        If a run finishes before it can be interrupted, start another run.
-        """
+        """Start one run for each of these methods, and interrupt the run with this method unless it has finished."""
         for blow in blows:
             with subprocess.Popen(
                 command(*self._arguments),

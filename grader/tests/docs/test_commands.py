@@ -42,7 +42,7 @@ ELSEWHERE = {
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """Return a copy of the repository. The commands of the pages may create files in this copy."""
+    """Return a folder with copies of course/, exercises/ and solutions/. The commands of the pages may change it."""
     for name in ("course", "exercises", "solutions"):
         shutil.copytree(ROOT / name, tmp_path / name)
     (tmp_path / "home").mkdir()

@@ -65,7 +65,7 @@ RECORDING = Recording(
 
 
 def same(one: Recording, other: Recording) -> bool:
-    """Return whether two values are equal. Arrays and NaN need a special comparison."""
+    """Return whether two recordings are equal. `==` cannot compare arrays and NaN."""
     return repr(to_json(one)) == repr(to_json(other))
 
 

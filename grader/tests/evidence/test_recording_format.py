@@ -23,7 +23,7 @@ CHALLENGES = find_exercise("07-challenges")
 
 
 def some_trials() -> Evidence:
-    """Return three trials: one completed, one in which the node made the simulator fail, and one that was not run."""
+    """Return four trials: two completed, one in which the node made the simulator fail, and one that was not run."""
     runs = {
         "circle": Run(good()),
         "eight": Run(recording(every(0.1, 1.0, 1.0))),

@@ -45,7 +45,7 @@ sys.exit(setup_errors.guarded(lambda: bootstrap.main(["learner"])))
 
 
 def reported(done: Done) -> None:
-    """Check that the command either succeeded or reported a machine error."""
+    """Check that the command exited with 0 or 1, or reported a machine error in a sentence."""
     no_traceback(done)
     if done.failures and done.code not in (0, 1):
         assert done.code == 3, done

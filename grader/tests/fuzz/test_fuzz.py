@@ -26,7 +26,7 @@ def no_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def changed(seed: bytes) -> st.SearchStrategy[bytes]:
-    """Return the seed with some bytes in its middle replaced, removed or duplicated."""
+    """Return a strategy for the seed with some bytes replaced, removed or inserted."""
 
     def change(start: int, length: int, new: bytes) -> bytes:
         return seed[:start] + new + seed[start + length :]

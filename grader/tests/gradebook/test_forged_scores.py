@@ -92,7 +92,7 @@ def withheld(term: Term, student: str) -> bool:
 
 
 def points_of(term: Term, assignment: str = STEP) -> dict[str, float]:
-    """Return the exported table."""
+    """Map each student to the score for the assignment in the exported table."""
     import csv
 
     file = term.root / "grades.csv"

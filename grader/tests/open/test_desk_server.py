@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Asked:
-    """A request with a valid token and an empty body."""
+    """A request with a valid token and an empty JSON object."""
 
     headers: Mapping[str, str] = {"x-course-token": "token"}
     path_params: Mapping[str, str] = {"name": "act"}

@@ -29,7 +29,7 @@ HEADER = "X-Course-Token"
 
 
 def answer(course: Course, method: str, path: str, headers: dict[str, str], body: bytes = b"") -> tuple[int, str]:
-    """Send a request exactly as given: the path is not normalized, and only the Content-Length header is added."""
+    """Send a request as given: the path is not normalized, and only Content-Length and a missing Host are added."""
     link = HTTPConnection("127.0.0.1", int(course.host.partition(":")[2]), timeout=HANG_S)
     link.putrequest(method, path, skip_host="Host" in headers, skip_accept_encoding=True)
     for name, value in headers.items():

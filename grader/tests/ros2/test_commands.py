@@ -49,7 +49,7 @@ signal.pause()
 
 
 def package(prefix: Path, name: str, **executables: str) -> None:
-    """Install a package with executables, with the same files as colcon."""
+    """Install a package with executables: its marker in the ament index, and its executables in lib/."""
     marker = prefix / "share/ament_index/resource_index/packages" / name
     marker.parent.mkdir(parents=True)
     marker.touch()

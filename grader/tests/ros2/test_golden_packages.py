@@ -13,7 +13,7 @@ from grader.tests.ros2.world import World, environment, golden
 
 @pytest.fixture
 def src(tmp_path: Path) -> Path:
-    """Create the folder and the user name with which the real packages were created."""
+    """Create the folder and the e-mail address with which the real packages were created."""
     (tmp_path / ".gitconfig").write_text("[user]\nemail = student@example.com\n")
     folder = tmp_path / "ros2_ws/src"
     folder.mkdir(parents=True)
@@ -34,7 +34,7 @@ def test_create_a_package_and_again(src: Path) -> None:
 
 
 def tree(folder: Path) -> set[str]:
-    """Return the kind, mode and name of each file, and whether it is empty.
+    """Return the kind, mode and name of each file and folder, and whether a file is empty.
 
     Sizes are compared only with 0, because the texts of our files differ from the texts of the real files.
     """

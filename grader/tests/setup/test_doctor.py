@@ -34,7 +34,7 @@ def states(lines: list[Line]) -> dict[str, str]:
 
 @pytest.fixture
 def wheels() -> Ros:
-    """Make the grader believe that the ROS 2 of the tests was installed from the wheels."""
+    """Return the ROS 2 of the tests as if it had been installed from the wheels."""
     return replace(find_ros(), kind="wheels")
 
 

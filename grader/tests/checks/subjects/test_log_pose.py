@@ -35,7 +35,7 @@ Said = tuple["Floats", "Floats", "Floats"]
 
 
 def truth(lag_s: float = 0.0) -> Said:
-    """Return the lines that a correct node logs at TIMES, with poses that are `lag_s` (s) old."""
+    """Return x, y and the distance (m) that a correct node logs at TIMES, with poses that are `lag_s` (s) old."""
     frames, start = DRIVE.frames, DRIVE.start
     at = np.searchsorted(frames.t_s, TIMES - lag_s) - 1
     x, y = np.append(start.x, frames.x), np.append(start.y, frames.y)

@@ -31,7 +31,7 @@ SLEEP = ("sleep", "sleep_for", "create_rate")
 
 
 def used(text: str, **files: str) -> tuple[Status, str]:
-    """Return the finding about a node with this code at its end, and with these modules next to it."""
+    """Return the status and the observation for a node with this code at its end, and with these modules next to it."""
     beside = {f"my_robot_controller/{name}.py": code for name, code in files.items()}
     package = submission({NODE_FILE: f"import time\n{NODE}\n{text}\n", **beside})
     finding = found(NO_CALLS, evidence(package=package), names=SLEEP, cause="Count.")
