@@ -1,6 +1,6 @@
 """A store on disk for the builds of a learner's package, so that the next `grader check` need not run colcon again.
 
-The store keeps the most recent builds in the user's cache folder. A file in the store that cannot be read, or is
+The store keeps the most recently used builds in the user's cache folder. A file in the store that cannot be read, or is
 damaged, is ignored. A build that counts for marks never comes from the store.
 """
 

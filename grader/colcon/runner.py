@@ -47,8 +47,8 @@ MOST_FILES = 20_000
 MOST_ENTRY_POINTS = 100 * 1024
 """The maximum size of entry_points.txt (bytes)."""
 
-# Standard output contains only the install tree: colcon and its processes write to standard error. The option
-# --base-paths keeps colcon from searching every subfolder. The executor is sequential because there is only one
+# Standard output contains only the install tree: colcon and its processes write to standard error. With
+# --base-paths, colcon searches only src for packages. The executor is sequential because there is only one
 # package and starting workers takes time. The install tree has no compiled modules, so that a node always runs
 # the source that is judged.
 _SCRIPT = r"""

@@ -58,7 +58,7 @@ class Trajectory:
 
     @property
     def wall_s(self) -> float:
-        """The time at which the turtle first touched a wall (s). Call this only if the turtle touched a wall."""
+        """The time at which the turtle first touched a wall (s). Use this only if the turtle touched a wall."""
         return float(self.t_s[int(self.wall.argmax())])
 
     @cached_property

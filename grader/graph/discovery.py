@@ -40,7 +40,7 @@ DEADLINE_S = 4.0
 process is stopped. If the response of a node that does not use the grader's profile is lost, the node announces itself
 again after 3 s (leaseAnnouncement), and then sends its endpoints."""
 NOTHING_THERE_S = 0.5
-"""If the number of participants is unknown, listen for this time (s). The real `ros2` also listens for this time."""
+"""The minimum time (s) to listen if the participants cannot be counted. The real `ros2` also listens for this time."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes that commands create on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")

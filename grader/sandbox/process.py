@@ -139,7 +139,8 @@ def run(
 ) -> Finished:
     """Run the command `argv` in a new session until the command exits.
 
-    The beginning and the end of standard error are kept.
+    The command is killed if it runs for longer than `timeout_s` (s), or if it writes more than `most_stdout` bytes to
+    standard output. Of standard error, the beginning and the end are kept, together at most `most_stderr` bytes.
 
     With `watch`, the child is killed when it and its descendants together exceed these limits. The time for which these
     processes wait for a processor does not count. On a crowded machine, the child may take up to MOST_TIME times

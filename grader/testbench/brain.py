@@ -47,7 +47,7 @@ class _State:
 
 
 class Brain:
-    """Controls the nodes that are created in one run of the tests. `node` is the name of each.
+    """Controls the nodes that are created in one run of the tests. All of them get the name `node`.
 
     After MOST_NODES nodes, each further node shares its state with the last of them.
     """

@@ -30,7 +30,7 @@ MOST_REPORT = 64 * 1024
 LATEST = 4.0
 """Even on a busy machine, a run is stopped after END_S plus this multiple of its time limit."""
 END_S = 30.0
-"""The time limit (s) for creating a cell, and the time limit for ending it."""
+"""The time (s) that is allowed for creating a cell, and the same time for ending it."""
 LOOK_S = 0.1
 _QUESTION = struct.Struct("<cHqdd")
 _HEADER = struct.Struct("<idI")
@@ -40,8 +40,8 @@ _LENGTH = struct.Struct("<H")
 class Conversation:
     """The pipes between the grader and one run of the tests, as a context manager.
 
-    `childs` contains the ends for the session. As soon as the session has received them, call `passed` to close them in
-    this process.
+    `childs` contains the ends for the session. As soon as they have been sent to the session, call `passed` to close
+    them in this process.
     """
 
     def __init__(self, node: str, brain: Brain, test_s: float, run_s: float, worked_s: WorkedS) -> None:
@@ -81,7 +81,7 @@ class Conversation:
         return self._process is not None
 
     def passed(self) -> None:
-        """Close the ends that the session has received."""
+        """Close the ends that have been sent to the session."""
         self._childs.close()
 
     def result(self) -> Ended:

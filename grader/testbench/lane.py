@@ -55,8 +55,8 @@ class Package:
     tree: bytes
     node: str
     alone: bool
-    """Whether the nodes of a run need no discovery. A context that a test has shut down may still have nodes. Discovery
-    between such contexts takes a fifth of the time of a run."""
+    """Whether the nodes of a run need no discovery. If so, discovery is switched off: it would only find the nodes of
+    earlier tests, and takes a fifth of the time of a run."""
 
 
 class Lane:

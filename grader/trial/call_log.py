@@ -18,7 +18,7 @@ similar calls. Similar calls are calls to services whose names end in the same w
 
 
 class CallLog:
-    """Records the calls. Even after thousands of calls to one service, calls to other services are recorded."""
+    """Records the calls, up to a limit. Thousands of calls to one service do not displace calls of another kind."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """Create an empty log. `now` returns the current time on the trial's clock (s)."""

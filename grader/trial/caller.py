@@ -45,7 +45,7 @@ class Caller:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        """The calls that were due so far, in order. If the service of a call was never ready, the call is `missing`."""
+        """The calls that were made so far, in order. A call is `missing` if its service was not ready in time."""
         return tuple(self._made)
 
     @property

@@ -187,8 +187,8 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
     """Run the scenario, and return the time (s) of SIGINT, or of the node's exit if it exited on its own.
 
-    After the start of the scenario, the node is considered the cause of every failure, except for failures of the
-    machine.
+    The node has been started, so it is considered the cause of every failure, unless the machine allows too few open
+    files.
     """
     try:
         return trial.run(duration_s)
@@ -203,7 +203,7 @@ def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
 
 
 def _own_doing(stall: tuple[float, float], node: NodeGroup, trial: SimulatedTrial | WallTrial) -> bool:
-    """Return whether the node caused the stall, by its own work or by the work that it caused in the simulator."""
+    """Return whether the node caused the stall, according to BUSY, REQUESTS_HZ, MESSAGES_HZ and STARTED."""
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall

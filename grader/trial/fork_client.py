@@ -40,10 +40,10 @@ class ForkServer:
     """
 
     def __init__(self, start: Callable[[int], subprocess.Popen[bytes]]) -> None:
-        """Create a server that is started by `start` or with the first request.
+        """Create a server whose process is started with the method `start` or with the first request.
 
-        `start` starts the process. Its argument is the descriptor of the socket for requests, which the process
-        inherits.
+        The function `start` starts the process. Its argument is the descriptor of the socket for requests, which the
+        process inherits.
         """
         self._start = start
         self._changing = Lock()

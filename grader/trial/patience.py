@@ -1,7 +1,8 @@
 """Time limits for a node.
 
 The limits apply to CPU time and to the time for which the node sleeps, so the load of the machine has hardly any
-effect. Only HANDSHAKE_S and TICK_S apply to wall time.
+effect. Only HANDSHAKE_S and TICK_S apply to wall time. If a trial has several nodes, the limits apply to their total
+CPU time, and to the time for which all of them sleep.
 """
 
 from __future__ import annotations

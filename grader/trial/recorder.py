@@ -49,8 +49,8 @@ topic."""
 class Recorder(Node):
     """A hidden node that subscribes to the topics in the graph, up to a limit.
 
-    The simulator itself reports the commands to turtle1 and the messages on its own topics. The recorder does not
-    subscribe to these commands, and to these messages only if other nodes publish on the same topic, too.
+    The recorder never subscribes to the commands for turtle1, because the simulator itself reports them. The recorder
+    subscribes to the simulator's own topics for turtle1 and to /clock only if other nodes publish on them, too.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Recorder(Node):
         `now` returns the current time on the trial's clock (s). `prefixes` are the folders in which the message types
         are installed.
 
-        The simulator itself reports its messages on the `simulated` topics (a mapping from names to types). The
+        `simulated` maps the names of the simulator's topics, for which the recorder is not needed, to their types. The
         `judged` topics are always recorded, however many other topics there are.
         """
         super().__init__("recorder", namespace=OWN_NAMESPACE, start_parameter_services=False, enable_rosout=False)

@@ -37,8 +37,8 @@ leave gaps of this length, so it is less than half the time between two announce
 WAKE_S = 1.0
 """The maximum time to wait until each node has reacted to /clock at time 0 (s)."""
 MOST_CPU = 2.0
-"""If the CPU time of a node exceeds this multiple of the trial's duration, the node would also be too slow in wall
-time. Therefore, its result must come from a trial in wall time."""
+"""If the CPU time of all nodes together exceeds this multiple of the trial's duration, the nodes would also be too slow
+in wall time. Therefore, their result must come from a trial in wall time."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events (half a second)."""
 OWN_EVERY = 5
@@ -195,7 +195,7 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self, *, requests: bool = True) -> bool:
-        """Handle what has arrived. Without `requests`, requests may wait. Return whether the node may react to any."""
+        """Handle what has arrived. Without `requests`, requests may wait. Return whether the node may react to it."""
         # Plain messages and acknowledgements get no response, so the node stays idle.
         if not self.may_act():
             return self.take_in(requests=requests) > 0

@@ -288,7 +288,7 @@ class Simulation:
 
 
 def leave_out_events(node: Node) -> None:
-    """Ignore events (incompatible types or QoS) on a node's topics, except the topics of the turtle.
+    """Ignore events (incompatible types or QoS) on a node's topics, except the topics of turtle1.
 
     Otherwise, rclpy would check all sources of events each time it waits. Topics that the node adds later keep their
     events.

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 MARGIN_M = 0.5
 """The minimum distance between the ideal path and a wall (m)."""
 MOST_RADIUS_M = 2.8
-"""The largest circle (m) for which a random start pose is drawn. With 2.96 m, the circles on both sides only just fit
-between two opposite corners of the field, so almost every pose that is drawn has no room for them."""
+"""The largest radius (m) of a circle for which a random start pose is drawn. With 2.95 m, the circles on both sides
+only just fit between two opposite corners of the field, so almost every pose that is drawn has no room for them."""
 
 
 def start_pose(seed: int | None, radius_m: float) -> Pose:
@@ -33,9 +33,9 @@ def start_pose(seed: int | None, radius_m: float) -> Pose:
         return Pose(*Start())
     if radius_m > MOST_RADIUS_M:
         message = (
-            f"A random start pose has no room for a circle with a radius of {radius_m:g} m on both sides (at most "
-            f"{MOST_RADIUS_M:g} m fit). Grade without --seed, and give the start pose in exercise.toml, in "
-            "[trial.start_pose]."
+            f"A random start pose needs a circle with a radius of at most {MOST_RADIUS_M:g} m, so that there is room "
+            f"on both sides. The circle of this exercise has a radius of {radius_m:g} m. Give the start pose in "
+            "exercise.toml, in [trial.start_pose]."
         )
         raise MachineError(message)
     draw = random.Random(seed)

@@ -39,7 +39,8 @@ class Target:
 def draw_targets(count: int, start: Pose, seed: int) -> tuple[Target, ...]:
     """Return `count` targets, sorted by name.
 
-    Places are drawn, at most MOST_DRAWS times, until they meet the conditions in the module's docstring.
+    Places are drawn, at most MOST_DRAWS times, until the order of the targets is unambiguous (see the beginning of this
+    module) and the distances satisfy APART_M, CLEAR_M and LONGEST_M.
     """
     draw = random.Random(f"targets {seed}")
     targets: tuple[Target, ...] = ()

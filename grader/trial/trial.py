@@ -144,7 +144,7 @@ class Trial:
 
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
-            OverwhelmedError: the node overloaded the trial so much that it could not be completed.
+            OverwhelmedError: the node made the simulator fail, or kept the trial from finishing.
             MachineError: the simulator or the sandbox failed, or the machine was too busy or out of memory.
         """
         arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []

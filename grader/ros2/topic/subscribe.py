@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def chosen_qos(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
     """Return the QoS that the options specify.
 
-    If no QoS option other than --qos-profile is given, the reliability and the durability are the strictest that are
-    compatible with every publisher.
+    If the topic has publishers, and no QoS option other than --qos-profile is given, the reliability and the durability
+    are the strictest that are compatible with every publisher.
     """
     profile = qos.profile(args)
     publishers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]

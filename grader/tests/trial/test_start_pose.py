@@ -33,7 +33,7 @@ def test_the_ideal_circle_of_either_side_keeps_clear_of_the_walls(seed: int, rad
 @given(st.integers(), st.floats(MOST_RADIUS_M, 5.5, exclude_min=True))
 def test_a_circle_that_does_not_fit_on_both_sides_has_no_random_start(seed: int, radius_m: float) -> None:
     assert start_pose(None, radius_m) == start_pose(None, 2.0)
-    with pytest.raises(MachineError, match="no room for a circle"):
+    with pytest.raises(MachineError, match="needs a circle with a radius of at most"):
         start_pose(seed, radius_m)
 
 
