@@ -60,13 +60,21 @@ def content_of(found: Found, exercise: Exercise, student: str) -> Content:
     if archive is None:
         return Content(_handed_in(found, exercise, student, nullcontext(found.path)))
     with archives.copied(archive) as copy:
-        return Content(_handed_in(found, exercise, student, copy.unpacked()), copy.sha256)
+        return Content(_handed_in(found, exercise, student, copy.unpacked(), inside=archive), copy.sha256)
 
 
 def _handed_in(
-    found: Found, exercise: Exercise, student: str, place: AbstractContextManager[Path]
+    found: Found,
+    exercise: Exercise,
+    student: str,
+    place: AbstractContextManager[Path],
+    inside: Path | None = None,
 ) -> Submission | Refused:
-    """Read the submission in the folder that `place` yields, or return the reason why it cannot be read."""
+    """Read the submission in the folder that `place` yields, or return the reason why it cannot be read.
+
+    `inside` is the archive from which this folder is unpacked: the path of the submission, or a file in it.
+    """
+    named = shown(str((inside or found.path).relative_to(found.path.parent)))
     try:
         with place as folder:
             try:
@@ -76,14 +84,14 @@ def _handed_in(
                 reason = str(error).replace(shown(str(folder)), shown(found.name))
                 return Refused(reason, _diagnosis(error, exercise))
     except unpack.NotUnpackedError as error:
-        return Refused(f"{shown(found.path.name)} {error}.", error.diagnosis)
+        return Refused(f"{named} {error}.", error.diagnosis)
     except DiskError:
         raise
     except MachineError as error:
         return Refused(str(error), None)
     except (OSError, ValueError) as error:
         detail = error.strerror if isinstance(error, OSError) else str(error)
-        return Refused(f"{shown(found.path.name)} could not be read ({detail}).", "unreadable")
+        return Refused(f"{named} could not be read ({detail}).", "unreadable")
     return replace(opened, name=found.name, student=student)
 
 

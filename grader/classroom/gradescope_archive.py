@@ -53,9 +53,9 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
             for path in _course(root):
                 _add(archive, f"course/{path.relative_to(root).as_posix()}", path.read_bytes(), executable=_runs(path))
     except OSError as error:
-        path, reason = path_and_reason(error)
+        where, reason = path_and_reason(error)
         # A file of the course could be unreadable, too.
-        message = f"{file} could not be created: {reason}{f' ({path})' if path not in ('', str(file)) else ''}."
+        message = f"{file} could not be created: {reason}{f' ({where})' if where not in ('', str(file)) else ''}."
         raise MachineError(message) from error
 
 

@@ -40,10 +40,11 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]
     if any(columns.count(name) != 1 for name in needed):
-        columns_of = "the column" if len(needed) == 1 else "the columns"
-        wanted = a_list([f'"{name}"' for name in needed]) + (f", and perhaps {a_list(also)}" if also else "")
+        wanted = "the column " if len(needed) == 1 else "each of the columns "
+        wanted += a_list([f'"{name}"' for name in needed]) + " once"
+        wanted += f", and perhaps {a_list(also)}" if also else ""
         header = shorten(",".join(names))
-        message = f'{file} is not a roster: its first line must name {columns_of} {wanted}, but it is "{header}".'
+        message = f'{file} is not a roster: its first line must name {wanted}, but it is "{header}".'
         raise UsageError(message)
     if not lines:
         message = f"{file} is not a roster: it contains only the column names."

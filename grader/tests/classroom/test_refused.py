@@ -55,6 +55,15 @@ def link(folder: Path) -> None:
     (folder / "ben").symlink_to("anna")
 
 
+def test_the_archive_in_a_folder_is_named(tmp_path: Path) -> None:
+    (tmp_path / "ben").mkdir()
+    (tmp_path / "ben" / "work.zip").write_bytes(b"PK\x03\x04 and no more")
+    (found,) = find_submissions([tmp_path], STEP, tmp_path / "out")
+    refused = read(found, find_exercise(STEP), "ben")
+    assert isinstance(refused, Refused)
+    assert refused.reason.startswith("ben/work.zip is not a .zip or .tar.gz")
+
+
 def no_archive(folder: Path) -> None:
     (folder / "ben.zip").write_bytes(b"PK\x03\x04 and no more")
 

@@ -45,7 +45,7 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"", 'the column "id", and perhaps name and email, but it is "".'),
+        (b"", 'the column "id" once, and perhaps name and email, but it is "".'),
         (b"ada,Ada\nbob,Bob\n", 'but it is "ada,Ada".'),
         (b"id,name,id\nada,Ada,a1\n", 'but it is "id,name,id".'),
         (b"id,name\n\n", "it contains only the column names"),
