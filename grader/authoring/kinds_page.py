@@ -37,7 +37,8 @@ UNITS = {
     "_m": "m",
     "_s": "s",
 }
-"""Maps the suffix of a parameter's name to the parameter's unit. `_m_s` comes first, because it also ends with `_s`."""
+"""Maps the suffix of a parameter's name to the parameter's unit. `_rad_s` and `_m_s` come first, because they also end
+with `_s`."""
 STAGES = {
     "source": (
         "Judged from the files",

@@ -14,10 +14,11 @@ the benchmark prints how often each of these statements is true:
 
 Each statement is checked in two ways: against the diagnoses that the operators expect, and against facts that do not
 depend on diagnoses (the difference between the two packages, the source and the recording;
-grader/tests/operators/facts.py). The benchmark also lists each wrong package whose report missed the cause or has a
-false statement, with the difference from the correct package. `--keep` stores recordings, and `--again` judges stored
-recordings instead of running packages. If a run with `--keep` is stopped, the next run continues from there. At the
-end, the benchmark checks a few wrong packages without and with `--explain`, and prints the ratio of the CPU times.
+grader/tests/operators/facts.py). The benchmark also lists each wrong package whose first failed check missed the cause
+or whose report has a false statement, with the difference from the correct package. `--keep` stores recordings, and
+`--again` judges stored recordings instead of running packages. If a run with `--keep` is stopped, the next run
+continues from there. At the end, the benchmark checks a few wrong packages without and with `--explain`, and prints the
+ratio of the CPU times.
 """
 
 from __future__ import annotations
@@ -196,7 +197,9 @@ def cost_of_explain(mades: Iterable[Made], folder: Path) -> float:
 
 
 def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
-    """Print each wrong package whose report missed the cause or has a false statement, and the statistics.
+    """Print each wrong package whose first failed check missed the cause or whose report has a false statement.
+
+    Then print the statistics.
 
     With `everything`, print every package that failed a check.
     """

@@ -53,9 +53,9 @@ _OBSERVE = """(line) => {
     });
     return null;
 }"""
-"""This script does not poll, because polling would keep the browser busy while the grader works. It returns the time at
-which the browser drew the verdict, so the time that a message takes from the browser to this process is not
-included."""
+"""This script does not poll, because polling would keep the browser busy while the grader works. The value of `shown`
+is the time at which the browser drew the verdict, so the time that a message takes from the browser to this process is
+not included."""
 
 
 def main() -> None:

@@ -178,7 +178,7 @@ class Exercise:
 def course_folder() -> Path:
     """Return the folder course/: next to the package in a checkout, or inside the package in an installed wheel.
 
-    Raises MachineError if neither folder contains a lesson.
+    Raises MachineError if neither folder contains an exercise.
     """
     package = Path(__file__).resolve().parents[1]
     for folder in (package.parent / "course", package / "course"):

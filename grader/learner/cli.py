@@ -151,6 +151,7 @@ def place(path: Path | None, exercise: str | None, workspace: Path | None = None
     Raises:
         UsageError: the arguments do not determine the exercise, no exercise has that name, or the folder of the step
             does not exist.
+        MachineError: the learner's progress cannot be read.
     """
     from grader.learner.exercise_argument import meant
 

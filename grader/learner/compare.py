@@ -36,8 +36,9 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print the differences from the solution, and the answers to the questions under "To think about".
 
     Raises:
-        UsageError: there is no such step, the learner has not passed it yet, or this copy of the course has no
-            solutions.
+        UsageError: there is no such step, the learner has not passed it yet, the learner's files cannot be read, or
+            this copy of the course has no solutions.
+        MachineError: the learner's progress cannot be read.
     """
     exercise = find_exercise(step)
     root = progress.workspace_of(folder)

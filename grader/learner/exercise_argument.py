@@ -29,6 +29,7 @@ def meant(
     Raises:
         UsageError: the arguments do not determine the exercise, no exercise has that name, or the folder of the step
             does not exist.
+        MachineError: the learner's progress cannot be read.
     """
     known, place = guessed(path, exercise, folder)
     if known is None and not place.exists():
@@ -55,6 +56,7 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
 
     Raises:
         UsageError: no exercise has that name, or the folder of the step does not exist.
+        MachineError: the learner's progress cannot be read.
     """
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):
@@ -91,8 +93,8 @@ def open_package(place: Path, exercise: Exercise | None, *, typed: bool) -> Subm
     If the exercise is known, the cells of a notebook also count, as in `open_handed_in`.
 
     Raises:
-        UsageError: the folder does not contain exactly one package. If no path was typed, the message also contains the
-            command that starts the first step.
+        UsageError: the folder does not contain exactly one package, or cannot be read. If no path was typed, the
+            message also contains the command that starts the first step.
     """
     try:
         return open_submission(place) if exercise is None else open_handed_in(place, exercise)
@@ -104,7 +106,7 @@ def open_package(place: Path, exercise: Exercise | None, *, typed: bool) -> Subm
 
 
 def _is_step(name: str) -> bool:
-    """Return whether the name is the id or the number of a step, and not a path."""
+    """Return whether the name is the id of a step, or consists of digits."""
     return name.isdigit() or name in catalogue()
 
 

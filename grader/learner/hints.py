@@ -27,6 +27,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
 
     Raises:
         UsageError: no step was named or started, or the step or its part does not exist.
+        MachineError: the progress cannot be read or written.
     """
     if step is not None and part is None and re.fullmatch("[A-Za-z]", step):
         step, part = None, step

@@ -36,7 +36,7 @@ class StepProgress:
     max: float = 0.0
     passed: bool = False
     read: tuple[int, ...] = ()
-    """The indices (in exercise.toml) of the hints that were read, in the order in which they were read."""
+    """The indices (in exercise.toml) of the hints that were read. A hint that is read again moves to the end."""
     failed: tuple[str, ...] = ()
     """The ids of the checks that failed in the last report, in the order of the report."""
     done: tuple[str, ...] = ()

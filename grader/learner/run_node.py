@@ -49,8 +49,9 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     """Return the program to run. The defaults are the current step and the first program of the step.
 
     Raises:
-        UsageError: the step does not exist, has no folder in the workspace, has no node, or does not run this
-            executable.
+        UsageError: no step was named or started, the step does not exist, has no folder in the workspace, has no node,
+            or does not run this executable.
+        MachineError: the learner's progress cannot be read.
     """
     if step and executable is None and not Path(step).exists():
         _refuse_program_as_step(step)
@@ -96,6 +97,7 @@ def run(program: Program, *, view: bool) -> int:
     if the node runs until Ctrl-C or exits without an error, and 1 otherwise.
 
     Raises:
+        UsageError: ROS_DOMAIN_ID is not a valid domain id.
         MachineError: ROS 2 or turtlesim cannot be started.
     """
     from grader.ros import shell

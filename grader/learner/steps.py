@@ -51,7 +51,8 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
         UsageError: the step does not exist, `student` is empty, or a file is in the place of a folder of the step (or
             the reverse). Also if `step` is "next", and the learner has not passed the current step yet or there is no
             later step.
-        MachineError: the workspace or the progress cannot be written.
+        MachineError: the workspace or the progress cannot be read or written, or the starting point of the step is
+            missing.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)

@@ -33,6 +33,7 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
 
     Raises:
         UsageError: the folder does not exist.
+        MachineError: the progress cannot be read or written.
     """
     if not folder.is_dir():
         message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."

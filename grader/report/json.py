@@ -10,7 +10,8 @@ Schema 4. Every key except `change` is always present. Strings are never null un
     clock         {used: "simulated" or "wall" ("none" if the first trial has no recording), why: a sentence}
     confined      false if the student's code ran without a sandbox, with resource limits only; null if this is not
                   known, in a report on a recording from an earlier version
-    seed          the value of --seed, for random inputs such as the start pose; null without --seed
+    seed          the value of --seed, for random inputs such as the start pose; null without --seed, or if the
+                  first trial has no recording
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
@@ -98,7 +99,7 @@ def _encodable(text: str) -> str:
 
 
 def from_json(written: str) -> Report:
-    """Read a report from JSON. Raises UsageError if the text is not a grader report, or has an unknown schema."""
+    """Read a report from JSON. Raises UsageError if the text is not a report, is damaged, or has an unknown schema."""
     try:
         data = json.loads(written)
         schema = data["schema"]

@@ -93,7 +93,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
 
 
 def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -> bool:
-    """Return whether a target existed when the next announcement was overdue."""
+    """Return whether a target existed at any time at which the next announcement was overdue."""
     late_s = begin_s + (most.high or 0.0)
     return any(is_there(track, late_s, begin_s + gap_s) for track in evidence.recording.tracks)
 
@@ -119,11 +119,11 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
     at = f"The message at {message.t_s:.1f} s"
     strange = [name for name in message.names if name not in around]
     known = {track.turtle for track in tracks}
-    if any(name not in known and _is_of_parts(name, known) for name in strange):
+    pieces = len(message.names) > 1 and "".join(message.names) in known
+    if pieces or any(name not in known and _is_of_parts(name, known) for name in strange):
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
-        return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
-    if len(message.names) > 1 and "".join(message.names) in known:
-        text = "join puts spaces between the letters, because it got one string. It needs a list of names."
+        if pieces and max(map(len, message.names)) == 1:
+            text = "join puts spaces between the letters, because it got one string. It needs a list of names."
         return failed(f'{at} is "{shorten(message.text)}".', expected, Cause("target-format", text, where))
     if strange:
         return _not_there(evidence, message, strange, expected)

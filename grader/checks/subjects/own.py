@@ -39,7 +39,8 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
         expected = "Every student has their own numbers."
         step = spec.step[:2]
         student = shlex.quote(shorten(by))
-        cause = f"`grader start {step} --student {student} --fresh` draws your numbers and keeps a copy of your work."
+        command = f"`grader start {step} --student {student} --fresh`"
+        cause = f"{command} draws your numbers and moves your work to another folder."
         return failed(observed, expected, Cause("numbers-of-another", cause, Where(spec.file)))
     wanted = draw_numbers(spec, found.student)
     if found != wanted:

@@ -178,7 +178,18 @@ def test_a_sentence_about_announcements_is_true(
 LETTERS = "join puts spaces between the letters, because it got one string. It needs a list of names."
 
 
-@pytest.mark.parametrize(("text", "found_"), [("t a r g e t 1", True), ("target1", False), ("t a r", False)])
-def test_a_name_in_letters_is_told(text: str, *, found_: bool) -> None:
+def with_text(text: str) -> str:
     messages = (*(said(2.0 + 0.5 * number, names_at(2.0 + 0.5 * number)) for number in range(16)), said(2.1, text))
-    assert (LETTERS in told(of_announces(given(messages=messages)))) == found_
+    return told(of_announces(given(messages=messages)))
+
+
+@pytest.mark.parametrize(
+    ("text", "found_"), [("t a r g e t 1", True), ("target1", False), ("t a r", False), ("target 1", False)]
+)
+def test_a_name_in_letters_is_told(text: str, *, found_: bool) -> None:
+    assert (LETTERS in with_text(text)) == found_
+
+
+def test_a_name_with_a_space_has_the_wrong_format() -> None:
+    assert "separated by single spaces" in with_text("target 1")
+    assert "separated by single spaces" not in with_text("target1")

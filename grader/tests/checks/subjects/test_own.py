@@ -123,7 +123,7 @@ def test_an_id_with_a_space_is_quoted_in_the_command() -> None:
     [
         ("Every student has their own numbers.", (ALICE, "bob"), (ALICE, "alice")),
         (
-            "`grader start 07 --student bob --fresh` draws your numbers and keeps a copy of your work.",
+            "`grader start 07 --student bob --fresh` draws your numbers and moves your work to another folder.",
             (ALICE, "bob"),
             (changed(radius_m=RADIUS_M + 0.2), "alice"),
         ),
