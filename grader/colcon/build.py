@@ -17,7 +17,7 @@ class Build:
     log: str
     """The combined standard output and standard error of colcon, limited in size."""
     package: str | None = None
-    """The name of the installed package, or None if nothing was installed."""
+    """The name of the installed package, or None if nothing was installed or the install tree had to be discarded."""
     timed_out: bool = False
     out_of: str | None = None
     """The limit that was reached, such as "disk" or "memory", or None."""

@@ -1,4 +1,4 @@
-"""Run colcon, usually in a sandbox cell. Each `python setup.py` that colcon starts is a fork of a prepared interpreter.
+"""Run colcon, usually in a sandbox cell. Each `setup.py` usually runs in a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
 metadata of all installed packages again. These imports take most of the CPU time of a build. So one process imports the

@@ -1,4 +1,4 @@
-"""Run `colcon build` on a submission in a cell, and read the result without executing it.
+"""Run `colcon build` on a submission, usually in a cell, and read the result without executing it.
 
 The source enters the cell as a tar stream, and the install tree leaves the cell as another tar stream. Because of these
 streams, a build in a cell does not touch the disk of this machine, and the install tree can later be passed to the cell

@@ -3,7 +3,7 @@
 Python has only the system calls that were declared in the C headers of the machine on which Python was built. For
 example, the Python of conda is built for old systems, so it has no `os.pidfd_open`, even on a new kernel.
 
-Like the scripts that run in a cell, this module needs only the standard library.
+This module needs only the standard library.
 """
 
 from __future__ import annotations

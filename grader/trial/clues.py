@@ -48,7 +48,7 @@ _CLOCKS = {"Clock", "ROSClock"}
 _UNWATCHED = "EventsExecutor"
 """The executor of rclpy.experimental. With this executor, the clock of a trial in simulated time could not start."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""Names from `threading` that are not clues, because none of them waits for time to pass."""
+"""Names from `threading` that are not clues, because nodes do not use them to wait for time to pass."""
 MOST_NODES = 30
 """The maximum size of an expression that is shown in full (number of AST nodes)."""
 

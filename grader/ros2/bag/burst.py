@@ -1,4 +1,4 @@
-"""The verb `bag burst`: publish messages of a bag as fast as possible, and then pause."""
+"""The verb `bag burst`: publish the first messages of a bag, or all of them, as fast as possible."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    text = "name of the node (default: all nodes)"
+    text = "name of the node (default: all lifecycle nodes)"
     lifecycle_client.add_node(parser, "?", text)
 
 
