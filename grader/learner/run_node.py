@@ -233,8 +233,8 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
         try:
             code = node.wait(ENDS_S if interrupted else None)
             break
-        except KeyboardInterrupt:
-            if not sys.stdin.isatty():  # a terminal has also sent Ctrl-C to the node
+        except KeyboardInterrupt as stop:
+            if isinstance(stop, _Signalled) or not sys.stdin.isatty():  # a terminal also sends Ctrl-C to the node
                 node.send_signal(signal.SIGINT)
             interrupted = True
         except subprocess.TimeoutExpired:
@@ -246,8 +246,12 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
     return 0 if code == 0 else 1
 
 
+class _Signalled(KeyboardInterrupt):
+    """SIGTERM or SIGHUP has arrived. Unlike Ctrl-C in a terminal, it may not have reached the node."""
+
+
 def _interrupt(*_: object) -> None:
-    raise KeyboardInterrupt
+    raise _Signalled
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -62,6 +62,14 @@ def test_ctrl_c_stops_only_the_program_if_another_turtlesim_is_running(learner: 
     simulator.expect(pexpect.EOF)
 
 
+def test_sigterm_in_a_terminal_ends_the_node_as_ctrl_c_does(learner: Learner) -> None:
+    child = learner.types("run", "--no-view")
+    child.expect(r"\[draw_circle\]: ")
+    child.kill(signal.SIGTERM)
+    child.expect(pexpect.EOF)
+    assert "did not end" not in child.before
+
+
 def test_a_crash_shows_the_learners_own_file(learner: Learner) -> None:
     node = learner.home / "ros2_ws" / NODE
     right = node.read_text("utf-8")
