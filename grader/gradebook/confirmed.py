@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 NOT_SYNCED = "not confirmed by `grader gradebook sync`"
 NOT_JUDGED = "not judged by the grader"
-NO_CHECK = "the exercise has no such check"
+NO_CHECK = "the grader has no check for this cell"
 
 Name = tuple[str, str]
 """A student and an exercise."""

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from grader.exercise.own_numbers import NumbersSpec
 
 KEPT = ".kept"
-"""If a cell replaces a file that this kernel has not written, the old version is kept in this folder. The folder is
-hidden, so its files are not graded."""
+"""If a cell replaces changes of the student that this kernel has not written, the old version of the file is kept in
+this folder. The folder is hidden, so its files are not graded."""
 SOLUTIONS = "solutions"
 """The folder with the notebooks that contain the solutions. This folder has the same name in the course and in a class
 of nbgrader."""
