@@ -10,7 +10,10 @@ if TYPE_CHECKING:
 
 
 def evidence_for_students(evidence: Evidence) -> Evidence:
-    """Return the evidence without hidden checks, and without trials (except the first) that only hidden checks use."""
+    """Return the evidence without hidden checks, and without the runs that only hidden checks use.
+
+    The run of the first trial always stays.
+    """
     exercise = evidence.exercise
     shown = tuple(spec for spec in exercise.checks if not spec.hidden)
     trials = {exercise.trials[0].id, *(spec.trial for spec in shown)}

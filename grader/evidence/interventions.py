@@ -1,9 +1,8 @@
 """Find out from the movement itself whether something other than velocity commands moved the turtle.
 
-In each frame, turtlesim moves a turtle only according to its velocities, and keeps it inside the walls. This module
-concludes that something else (a teleport, a reset or a goal of rotate_absolute) moved the turtle if a movement does not
-follow from the velocities, if the turtle turned while a goal was active, or if it turned at a speed that no recent
-command had set.
+In each frame, turtlesim moves a turtle only according to its velocities, and keeps it inside the walls. In three cases,
+something else (a teleport, a reset or a goal of rotate_absolute) moved the turtle: a movement does not follow from the
+velocities, the turtle turned while a goal was active, or it turned at a speed that no recent command had set.
 """
 
 from __future__ import annotations

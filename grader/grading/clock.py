@@ -12,10 +12,10 @@ The rules, in the order in which they are applied:
    by chance, so the trial is first repeated once in simulated time.
 4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
    the node did not stop.
-5. If a trial in wall time fails and was disturbed by other programs or by a change of the system time, the trial is
-   repeated while no other grader of this user grades (turns.py). A busy machine can make a correct node look wrong, but
-   it cannot make a wrong node look correct, so the result of the first trial that passes counts. There are at most
-   WALL_TRIALS trials. If none of them passes, the trial with the least disturbance counts.
+5. A trial in wall time is repeated if it fails, and if other programs or a change of the system time disturbed it.
+   During the repetition, no other grader of this user grades (turns.py). A busy machine can make a correct node look
+   wrong, but it cannot make a wrong node look correct, so the result of the first trial that passes counts. There are
+   at most WALL_TRIALS trials. If none of them passes, the trial with the least disturbance counts.
 """
 
 from __future__ import annotations

@@ -92,7 +92,8 @@ class Simulation:
         self._silent_servers = silent if several else None
         self._in_company_s: float | None = None
         leave_out_events(self.recorder)
-        leave_out_events(self.turtlesim)  # before there are other turtles, which can be removed
+        # Call this before other turtles exist: without its events, rclpy could not destroy a topic of a removed turtle.
+        leave_out_events(self.turtlesim)
         self.keeper = TargetKeeper(self.turtlesim, inputs, self._calls.answered) if inputs.targets else None
         self._nodes: tuple[Node, ...] = tuple(filter(None, (self.turtlesim, self.recorder, self.keeper)))
         self.recorder.own_nodes = tuple(each.get_fully_qualified_name() for each in self._nodes)

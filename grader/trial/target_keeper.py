@@ -27,9 +27,9 @@ ANNOUNCED_EVERY_S = 0.5
 NEAR_M = 1.0
 LATE_S = 1.5
 """A late service is offered this time (s) after turtle1 first came within NEAR_M (m) of a target, or when turtle1 has
-stood still for this time, but not before `catch_from_s` of the inputs. In this time, every node that is fast enough to
-catch all targets comes close enough to the target to call the service. A node may also wait for the service before it
-drives.
+stood still for this time. It is never offered before `catch_from_s` of the inputs. Within LATE_S, every node that is
+fast enough to catch all targets comes close enough to the target to call the service. A node may also wait for the
+service before it drives.
 """
 
 
