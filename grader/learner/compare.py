@@ -11,6 +11,7 @@ from grader.errors import UsageError
 from grader.exercise.markers import MEANT, solved, syntax_of
 from grader.exercise.model import catalogue
 from grader.learner import progress, workspace
+from grader.learner.exercise_argument import existing_work
 from grader.learner.in_words import difference
 from grader.submission import tree
 from grader.submission.reader import read
@@ -36,8 +37,8 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print the differences from the solution, and the answers to the questions under "To think about".
 
     Raises:
-        UsageError: there is no such step, the learner has not passed it yet, the learner's files cannot be read, or
-            this copy of the course has no solutions.
+        UsageError: there is no such step, the learner has not passed it yet, the learner's folder does not exist or
+            cannot be read, or this copy of the course has no solutions.
         MachineError: the learner's progress cannot be read.
     """
     exercise = find_exercise(step)
@@ -53,7 +54,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     asked = _asked(exercise)
     texts = _texts(ideal / exercise.package if exercise.package else ideal)
     ours = {path: text for path, text in texts.items() if path in asked}
-    theirs = _texts(workspace.work_folder(exercise, root))
+    theirs = _texts(existing_work(exercise, root))
     same = [path for path in ours if theirs.get(path) == ours[path]]
     if exercise.numbers is not None and len(same) < len(ours):
         console.print(OTHER_NUMBERS, soft_wrap=True, markup=False)

@@ -112,8 +112,17 @@ def _is_step(name: str) -> bool:
 
 def _step(name: str, root: Path) -> tuple[Exercise, Path]:
     exercise = find_exercise(name)
+    return exercise, existing_work(exercise, root)
+
+
+def existing_work(exercise: Exercise, root: Path) -> Path:
+    """Return the folder with the learner's work on the exercise in the workspace `root`.
+
+    Raises:
+        UsageError: the folder does not exist.
+    """
     place = workspace.work_folder(exercise, root)
     if not place.is_dir():
         message = f"There is no folder {place}. `grader start {exercise.id[:2]}` creates it."
         raise UsageError(message)
-    return exercise, place
+    return place

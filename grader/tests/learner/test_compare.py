@@ -44,6 +44,12 @@ def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path)
     assert "Afterwards: answers to" in text
 
 
+def test_a_folder_that_was_deleted_is_named() -> None:
+    passed(FIRST)
+    with pytest.raises(UsageError, match=r"There is no folder .*my_robot_controller\. `grader start 01` creates it\."):
+        print_solution("01", None, Console(file=io.StringIO()))
+
+
 def test_the_solution_does_not_show_the_nodes_of_earlier_steps() -> None:
     steps.start("12", None)
     passed("12-tests")
