@@ -149,7 +149,7 @@ def _read(done: process.Finished) -> Built:
             message = "colcon is not installed in this Python: `make demo` in the course's folder installs it."
         else:
             why = errors.splitlines()[-1].rstrip(".") if errors else "no message"
-            message = f"The build could not be started: {why}. `grader doctor` shows what is missing."
+            message = f"The build could not be started: {why}. Check this machine with `grader doctor`."
         raise MachineError(message)
     built, cut = read(_described, done)
     return Built(built, b"" if cut else done.stdout)

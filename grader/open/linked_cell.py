@@ -86,7 +86,7 @@ class LinkedCell:
             await_launcher(self.process.stdout)
         except LaunchError as error:
             lines = str(error).splitlines() or ["no message"]
-            message = f"The sandbox did not start: {lines[-1].rstrip('.')}. `grader doctor` shows what is missing."
+            message = f"The sandbox did not start: {lines[-1].rstrip('.')}. Check this machine with `grader doctor`."
             raise MachineError(message) from error
         # Only bubblewrap has forked so far, and each of its processes has one child.
         self.first = list(family(self.process.pid))[-1]

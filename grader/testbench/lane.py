@@ -152,7 +152,7 @@ class Lane:
             conversation.passed()
             ended = conversation.result()
             if not (conversation.has_begun or self._has_begun or self._killed):
-                raise MachineError("No cell could be created for the tests. `grader doctor` shows what is missing.")  # noqa: EM101
+                raise MachineError("No cell could be created for the tests. Check this machine with `grader doctor`.")  # noqa: EM101
             self._has_begun = True
         return ended
 
@@ -166,7 +166,7 @@ class Lane:
         if not self._ready and not self._killed:
             message = (
                 "The tests could not be started: the sandbox, pytest or rclpy does not work, or the machine is too "
-                "busy. `grader doctor` shows what is missing."
+                "busy. Check this machine with `grader doctor`."
             )
             raise MachineError(message)
 

@@ -83,7 +83,7 @@ def make_calls(
         done = _run(stack, start.argv, env, ros, stdin, in_cell=in_cell)
     if not done.stdout.startswith(_READY):
         errors = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no message"]
-        message = f"The calls to the package failed: {errors[0]}. `grader doctor` shows what is missing."
+        message = f"The calls to the package failed: {errors[0]}. Check this machine with `grader doctor`."
         raise MachineError(message)
     return done.stdout[len(_READY) :]
 

@@ -284,5 +284,5 @@ def _fault(output: str) -> MachineError:
     """Return the error for a simulator that failed because of the machine."""
     # A complete sentence is one of the grader's messages, and says what to do.
     refused = output if output.endswith(".") else refusal_in(output)
-    unknown = f"The simulator failed: {output or 'it printed nothing'}. `grader doctor` shows what is missing."
+    unknown = f"The simulator failed: {output or 'it printed nothing'}. Check this machine with `grader doctor`."
     return MachineError(f"The simulator failed. {refused}" if refused else unknown)
