@@ -3,10 +3,10 @@
 Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
 and a folder with students' clones of the course, each of which contains exercises/EXERCISE.
 
-No student is omitted. Each folder, archive and symbolic link becomes a submission, except what programs create (such as
-.git). Links are included because a student may have replaced a folder with a link. If a submission cannot be graded,
-`Found.refused` contains the reason. This module uses os.path, because the functions of os.path return False for a path
-that cannot be accessed. Before Python 3.14, the methods of pathlib raise an exception.
+Each folder, archive and symbolic link becomes a submission, except what programs create (such as .git). Links are
+included because a student may have replaced a folder with a link. If a submission cannot be graded, `Found.refused`
+contains the reason. This module uses os.path, because the functions of os.path return False for a path that cannot be
+accessed. Before Python 3.14, the methods of pathlib raise an exception.
 """
 
 # ruff: noqa: PTH100, PTH110, PTH112, PTH113, PTH114, PTH118

@@ -36,7 +36,7 @@ DASK = "dask://"
 
 @dataclass(frozen=True)
 class Request:
-    """The options of the command `grader grade`."""
+    """The arguments and options of `grader grade`, except --fail-under."""
 
     submissions: Sequence[Path]
     out: Path

@@ -177,7 +177,7 @@ def _start_fork_servers() -> None:
 
 
 def _end_with_owner(descriptor: int) -> None:
-    """Exit as soon as the owner has exited. Every sandbox cell exits together with its parent process."""
+    """Exit as soon as the owner has exited. The sandbox rooms of this worker, and the cells in them, then end, too."""
     poll = select.poll()
     poll.register(descriptor, 0)  # POLLHUP is always reported
     while True:
