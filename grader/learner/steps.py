@@ -100,6 +100,8 @@ def begin_message(begun: Begun) -> str:
         "Grade on every save:  grader watch",
         f"In each new terminal: source {quote(str(_setup_file()))}",
     ]
+    if begun.root != progress.workspace_of(None):  # `grader check` has no option --workspace
+        lines.append(f"In every terminal:    export ROS2_WORKSPACE={quote(str(begun.root))}")
     return "\n".join(lines)
 
 

@@ -1,4 +1,4 @@
-"""The command that is named after a step has passed."""
+"""The commands that are named after a step has been started or has passed."""
 
 from __future__ import annotations
 
@@ -63,3 +63,9 @@ def test_a_progress_file_that_cannot_be_read_is_named_once() -> None:
     with pytest.raises(MachineError) as refused:
         progress.load(progress.workspace_of(None))
     assert str(refused.value).startswith(f"Your progress in {progress.state_file()} cannot be read (Is a directory). ")
+
+
+def test_another_workspace_needs_a_variable_for_the_next_commands(home: Path) -> None:
+    command = f"export ROS2_WORKSPACE={home / 'other_ws'}"
+    assert command in steps.begin_message(steps.start("01", home / "other_ws"))
+    assert "ROS2_WORKSPACE" not in steps.begin_message(steps.start("01", None))
