@@ -50,6 +50,8 @@ MEANINGS = {
     "NameError": "This name has no value here. Check the spelling of the name, and the imports.",
     "NotInitializedException": "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
     "ParameterNotDeclaredException": "Declare a parameter with declare_parameter before you read or set it.",
+    "OverflowError": "A number is too large for this operation.",
+    "RecursionError": "A function calls itself again and again, directly or through another function.",
     "SyntaxError": "Python cannot read this line or the line before it.",
     "TabError": "The indentation mixes tabs and spaces.",
     "TypeError": "An operation or a function got a value of the wrong type, or the wrong number of arguments.",

@@ -15,8 +15,10 @@ if TYPE_CHECKING:
 def imported_otherwise(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the file imports the name with `as`, too late or inside another function, else None."""
     imports = [node for node in scene.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
-    for node, alias in ((each, alias) for each in imports for alias in each.names if alias.name == name):
-        function, renamed = scene.function_around(node), alias.asname not in (None, name)
+    for node, alias in ((each, alias) for each in imports for alias in each.names):
+        function, renamed = scene.function_around(node), alias.name == name and alias.asname not in (None, name)
+        if not renamed and name != (alias.asname or alias.name.partition(".")[0]):
+            continue
         if function is not None and function is not scene.function:
             text = (
                 f"Line {node.lineno} imports {name} inside {function.name}, so the name does not exist in other "

@@ -82,6 +82,11 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
         "indentation",
         "All lines of a block must start at the same column, further right than the line with the colon.",
     ),
+    (
+        r"positional argument follows keyword",
+        "syntax-error",
+        "In a call, the arguments with a name and = come after all arguments without a name.",
+    ),
     (r"forgot a comma", "comma-missing", "Put a comma between two arguments and between two items of a list."),
     (r"instead of '='|cannot assign", "equals", "= assigns a value to a name. == compares two values."),
 )
@@ -96,6 +101,7 @@ OTHER_LANGUAGES = (
     (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
     (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
     (r"\s*import\s+[\w\s,]+\s+from\s+[\w.]+\s*", "In Python, from comes first: from MODULE import NAME."),
+    (r".*[(,]\s*/\w+/?\w*\s*[,)].*", "A topic name is a string, so it needs quotation marks."),
     (r"\s*//.*", "In Python, a comment begins with #."),
     (
         r".*=\s*new\s+\w+.*",

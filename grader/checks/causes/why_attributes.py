@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import no_entry_point, ros_names
 from grader.checks.causes.attribute_of_none import attribute_of_none
+from grader.checks.causes.attributes_of_class import members, needs_itself, of_super, uncalled_init
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.why_no_field import why_no_field
 from grader.checks.causes.why_not_set import compared
@@ -66,6 +67,8 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None
+    if match["object"] == "super":
+        return of_super(scene, match["name"])
     name = _written_name(scene, match["name"])
     if match["module"]:
         return _of_module(scene, match["module"], name)
@@ -151,6 +154,9 @@ def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
         return Cause("import-wrong-place", f"{name} is in the module {place}.")
     if module == "rclpy" and name in ros_names.OF_ROS_1:
         return _of_ros_1(name)
+    if module == "rclpy" and name in ros_names.NODE:
+        text = f"{name} is a method of the node, not a function of rclpy. In a method of the node, write self.{name}."
+        return Cause("attribute-missing", text).fixed_by(at(scene.crash.where, f"rclpy.{name}", f"self.{name}"))
     known = ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
     return _misspelt(scene, name, known) or Cause(
         "attribute-missing", f"The module {shorten(module)} does not contain this name."
@@ -187,7 +193,7 @@ def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
         return Cause("method-outside-class", text, scene.at(first))
     if name in {attribute for attribute, _ in attributes_set(own)} or name in ros_names.NODE:
         return class_for_object(scene, owner, name)
-    return _misspelt(scene, name, _members(scene, own)) or Cause(
+    return _misspelt(scene, name, members(scene, own)) or Cause(
         "attribute-missing", f"The class {shorten(owner)} has no method or attribute with that name."
     )
 
@@ -214,6 +220,9 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
     is_own = any(isinstance(node, ast.Attribute) and node.attr == name for node in scene.on_line)
     if name.startswith("_") and not name.startswith("__") and made is not None and not is_own:
         base = [node for node in ast.walk(made) if isinstance(node, ast.Call) and (_attr(node.func) == "__init__")]
+        if not base and (uncalled := uncalled_init(made)) is not None:
+            text = "super().__init__ is not called. Write parentheses after it, with the node name inside."
+            return Cause("super-init-missing", text, scene.at(uncalled))
         if not base:
             text = "__init__ never calls super().__init__, which creates the node."
             line = f'{" " * made.body[0].col_offset}super().__init__("{scene.evidence.trial.node}")'
@@ -225,6 +234,8 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
     if instead is not None:
         return instead
     lines = [line for attribute, line in attributes_set(own) if attribute == name]
+    if scene.line in lines:
+        return needs_itself(scene, name)
     if lines:
         text = f"self.{shorten(name)} is assigned on line {min(lines)}, which has not run yet."
         return Cause("attribute-too-early", text)
@@ -266,26 +277,9 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("attribute-missing", text).fixed_by(at(scene.crash.where, f".{name}(", f".get_logger().{name}("))
     if name == "publish":
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
-    return _misspelt(scene, name, {*ros_names.NODE, *_members(scene, own)}) or Cause(
+    return _misspelt(scene, name, {*ros_names.NODE, *members(scene, own)}) or Cause(
         "attribute-missing", f"self.{shorten(name)} is never assigned, and the class has no method with that name."
     )
-
-
-def _members(scene: CrashScene, own: ast.ClassDef) -> set[str]:
-    """Return the methods and attributes that the node's files define for a class and its base classes."""
-    nodes = [node for module in scene.evidence.code.modules for node in module.nodes]
-    known = {node.name: node for node in nodes if isinstance(node, ast.ClassDef)}
-    family, waiting = [own], [own]
-    while waiting:
-        names = [(dotted(base) or "").rpartition(".")[2] for base in waiting.pop().bases]
-        found = [known[name] for name in names if name in known and known[name] not in family]
-        family += found
-        waiting += found
-    return {
-        name
-        for each in family
-        for name in (*(method.name for method in methods(each)), *(attribute for attribute, _ in attributes_set(each)))
-    }
 
 
 def _is_store(node: ast.Name) -> bool:

@@ -10,6 +10,8 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.causes.why_init_call import why_init_call
+from grader.checks.causes.why_maker_call import why_maker_call
 from grader.checks.causes.why_operands import why_operands
 from grader.checks.causes.why_other_object import CREATE_OBJECT, message_for_class, published_other
 from grader.checks.causes.why_parameters import too_few, too_many
@@ -106,7 +108,7 @@ def kind_of(argument: ast.expr, scene: CrashScene) -> str:
 def why_type(scene: CrashScene) -> Cause | None:
     """Return the cause of a TypeError, such as wrong arguments or an object that is not callable, or None."""
     text = scene.crash.message
-    found = callback_called(scene) or swapped(scene)
+    found = callback_called(scene) or swapped(scene) or why_init_call(scene) or why_maker_call(scene)
     if found is not None:
         return found
     missing, many, keyword = MISSING.search(text), TOO_MANY.search(text), KEYWORD.search(text)
@@ -145,8 +147,6 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         text = f"{spun_with if name else 'A class is used as a node.'} {CREATE_OBJECT}"
         fix = at(scene.at(set_to), ast.unparse(set_to), f"{ast.unparse(set_to)}()") if set_to is not None else ()
         return Cause("class-for-object", text, scene.at(set_to)).fixed_by(fix)
-    if "descriptor '__init__'" in text and "'super'" in text:
-        return Cause("not-called", "super is a function. Write super().__init__, with parentheses after super.")
     if LOGGED in text:
         return Cause("string-and-number", "A log method takes a string. Use an f-string to put a number into a string.")
     if "'NoneType' object does not support the context manager" in text:
@@ -188,8 +188,6 @@ def _after_shutdown(scene: CrashScene) -> Cause | None:
 
 
 def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
-    if function == "__init__" and "node_name" in names:
-        return _init_misspelt(scene) or Cause("node-name-missing", "Pass the node name, a string, to super().__init__.")
     own = too_few(scene, function, names)
     if own is not None:
         return own
@@ -211,21 +209,6 @@ def _init_of(scene: CrashScene, missing: re.Match[str]) -> Cause | None:
     if of == "ActionServer":
         text += " A node that sends goals needs an ActionClient."
     return Cause("argument-missing", text)
-
-
-def _init_misspelt(scene: CrashScene) -> Cause | None:
-    """Return the cause if the class of the new object has a method whose name is a misspelt __init__, else None."""
-    for own in (each for each in scene.classes if scene.calls_on_line(each.name)):
-        names = {each.name: each for each in methods(own)}
-        found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
-        if "__init__" not in names and found:
-            text = (
-                f"The class has a method {found[0]}, but only __init__ is called when an object is created. Write "
-                "__init__, with two underscores on each side."
-            )
-            place = scene.at(names[found[0]])
-            return Cause("init-misspelt", text, place).fixed_by(at(place, found[0], "__init__"))
-    return None
 
 
 def _too_many(scene: CrashScene, many: re.Match[str]) -> Cause | None:

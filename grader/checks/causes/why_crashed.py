@@ -19,7 +19,7 @@ from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
 from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_main import why_main
-from grader.checks.causes.why_names import why_no_name, why_unbound
+from grader.checks.causes.why_names import why_no_name
 from grader.checks.causes.why_no_file import why_no_file
 from grader.checks.causes.why_none import why_none
 from grader.checks.causes.why_passed import why_passed
@@ -27,6 +27,7 @@ from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_rclpy_refused import why_rclpy_refused
 from grader.checks.causes.why_response import why_response
 from grader.checks.causes.why_transition import why_no_transition
+from grader.checks.causes.why_unbound import why_unbound
 from grader.checks.causes.why_wrong_object import why_wrong_object
 from grader.checks.outcome import Finding, failed
 from grader.common.words import a_list, shorten
@@ -95,6 +96,8 @@ def _why_value(scene: CrashScene) -> Cause | None:
     if "to unpack" in scene.crash.message:
         text = "The number of names differs from the number of values that are unpacked."
         return comma_for_dot(scene) or Cause("crash", text)
+    if "history depth" in scene.crash.message:
+        return Cause("queue-size", "The queue size is a whole number, and cannot be negative.")
     if "list.remove(x): x not in list" in scene.crash.message:
         return Cause("crash", "remove needs an item that is equal to one in the list, and the list has no such item.")
     if "empty" not in scene.crash.message or not any(name in scene.crash.message for name in ("min()", "max()")):

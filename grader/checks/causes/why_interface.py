@@ -39,6 +39,9 @@ def why_interface(scene: CrashScene) -> Cause | None:
     owner, name = match["object"] or match["type"] or "", match["name"]
     if owner == "str" and name == OF_A_TYPE:
         return Cause("arguments-swapped", "A string was passed instead of the type. The type comes before the name.")
+    if owner == "type" and name == OF_A_TYPE:
+        text = "The type must be a class of ROS 2, such as Twist from geometry_msgs.msg, and not a class of Python."
+        return Cause("wrong-type", text)
     if owner == "Future":
         text = (
             "This is a future. Its method result() returns what has arrived, such as a response. "

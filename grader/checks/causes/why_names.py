@@ -1,4 +1,4 @@
-"""Explain a NameError or an UnboundLocalError in a student's node: the reason why a name was missing."""
+"""Explain a NameError in a student's node: the reason why a name was missing."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.bound_elsewhere import as_parameter, bound_elsewhere, is_global, stores
+from grader.checks.causes.bindings import bindings, names_bound
+from grader.checks.causes.bound_elsewhere import as_parameter, bound_elsewhere, stores, without_value
 from grader.checks.causes.comma_for_dot import comma_for_dot
-from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.crash_scene import attributes_set, methods
 from grader.checks.causes.imported_otherwise import imported_otherwise
+from grader.checks.causes.why_calls import callback_called
 from grader.checks.causes.why_other_object import NEED_THE_NODE
 from grader.checks.edit import Edit, at
-from grader.common.words import nearest, shorten
+from grader.common.words import a_list, nearest, shorten
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
-UNBOUND = re.compile(r"local variable '(?P<name>\w+)'")
 NO_NAME = re.compile(r"name '(?P<name>\w+)' is not defined")
 WELL_KNOWN = ("rclpy", "math", "time", "random", "os", "sys", "json", "threading", "datetime", "functools")
 MEMBERS = {
@@ -53,11 +54,14 @@ def why_no_name(scene: CrashScene) -> Cause | None:
     name = match["name"]
     return (
         comma_for_dot(scene, name)
+        or _in_callback(scene, name)
+        or _of_base(scene, name)
         or _of_self(scene, name)
         or _of_string(scene, name)
         or _in_other_capitals(scene, name)
         or imported_otherwise(scene, name)
         or _of_import(scene, name)
+        or _of_from_import(scene, name)
         or bound_elsewhere(scene, name)
         or _alike(scene, name)
         or _unknown(scene, name)
@@ -65,8 +69,8 @@ def why_no_name(scene: CrashScene) -> Cause | None:
 
 
 def _unknown(scene: CrashScene, name: str) -> Cause:
-    if lines := [line for line, _ in stores(scene, name)]:
-        return Cause("name-undefined", f"Line {min(lines)} gives {name} a value, but {name} has none here.")
+    if known := [each for each in bindings(scene, name) if not each.in_brackets and each.line != scene.line]:
+        return Cause("name-undefined", without_value(known[0]))
     if name[:1].isupper():
         return Cause("name-undefined", "Nothing defines this name before this line, and nothing imports it.")
     parameter = as_parameter(scene, name)
@@ -80,9 +84,22 @@ def _unknown(scene: CrashScene, name: str) -> Cause:
             return Cause("name-undefined", f"{text} {function} needs the node, an object of your class.")
     if parameter:
         return Cause("local-name", text)
-    uses = sum(isinstance(node, ast.Name) and node.id == name for node in scene.nodes)
-    # A name that should have been a string usually occurs only once.
-    return Cause("name-undefined", f"{text} A string needs quotation marks." if uses == 1 else text)
+    may_be_string = _may_be_string(scene, name)
+    return Cause("name-undefined", f"{text} A string needs quotation marks." if may_be_string else text)
+
+
+def _may_be_string(scene: CrashScene, name: str) -> bool:
+    """Return whether the name may be a string without its quotation marks.
+
+    Such a name usually occurs only once. It has no attribute, is not called, and is not inside an f-string.
+    """
+    uses = [node for node in scene.nodes if isinstance(node, ast.Name) and node.id == name]
+    others = [
+        node.func if isinstance(node, ast.Call) else node.value
+        for node in scene.on_line
+        if isinstance(node, ast.Attribute | ast.FormattedValue | ast.Subscript | ast.Call)
+    ]
+    return len(uses) == 1 and uses[0] not in others
 
 
 def _of_self(scene: CrashScene, name: str) -> Cause | None:
@@ -93,7 +110,7 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
     if name == "self":
         return Cause("self-parameter", "A method can use self only if self is its first parameter.")
     own = scene.own_class
-    if own is None:
+    if own is None or (scene.function is None and name in _set_in_class(own)):
         return None
     known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own)), *_set_in_class(own)}
     if _of_string(scene, name) is not None and not _holds_string(own, name):
@@ -101,6 +118,36 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
     if name in known or (name in ros_names.NODE and _is_called(scene, name)):
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
         return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
+    return None
+
+
+def _in_callback(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if the name is an argument of a callback that is called instead of passed, else None."""
+    found = callback_called(scene)
+    calls = [each for node in scene.on_line if isinstance(node, ast.Call) for each in (*node.args, *node.keywords)]
+    given = [each.value if isinstance(each, ast.keyword) else each for each in calls]
+    inside = [each for call in given if isinstance(call, ast.Call) for each in call.args]
+    return found if any(isinstance(each, ast.Name) and each.id == name for each in inside) else None
+
+
+def _of_base(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if the name is a base class with a wrong first letter, as in `class Driver(node)`, else None."""
+    bases = [base for each in scene.classes if each.lineno == scene.line for base in each.bases]
+    other = next((each for each in _bound(scene) if each != name and each.lower() == name.lower()), None)
+    if other is None or not any(isinstance(each, ast.Name) and each.id == name for each in bases):
+        return None
+    text = f"A similar name exists: {shorten(other)}. Upper and lower case matter."
+    return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, other))
+
+
+def _of_from_import(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if the name is a package from which a line imports only other names, else None."""
+    for node in scene.nodes:
+        if isinstance(node, ast.ImportFrom) and not node.level and (node.module or "").partition(".")[0] == name:
+            names = a_list([shorten(each.asname or each.name) for each in node.names])
+            text = f"Line {node.lineno} gives the file {names}, but not the name {name}. Leave out the module here."
+            if node.names[0].name != "*" and any(f"{node.module}." in ast.unparse(each) for each in scene.on_line):
+                return Cause("name-undefined", text)
     return None
 
 
@@ -140,6 +187,8 @@ def _is_called(scene: CrashScene, name: str) -> bool:
 
 
 def _of_import(scene: CrashScene, name: str) -> Cause | None:
+    if any(each.is_import or (each.function is None and each.of_class is None) for each in bindings(scene, name)):
+        return None
     if name in ros_names.MODULE_OF:
         module = ros_names.MODULE_OF[name]
         star = _star_import(scene, module)
@@ -205,7 +254,7 @@ def _alike(scene: CrashScene, name: str) -> Cause | None:
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, CONSTANTS[name]))
     statements = [node.value for node in scene.nodes if isinstance(node, ast.Expr)]
     if any(isinstance(each, ast.Name) and each.id == name for each in statements):
-        word = nearest(name, keyword.kwlist, alike=0.8)
+        word = name.lower() if name.lower() in keyword.kwlist else nearest(name, keyword.kwlist, alike=0.8)
         if word is not None:
             text = f"A line that consists of one word is usually a keyword of Python. A similar keyword exists: {word}."
             return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, word))
@@ -214,6 +263,8 @@ def _alike(scene: CrashScene, name: str) -> Cause | None:
     if guess is None and _is_called(scene, name):
         plain = {each.lower(): each for each in _bound(scene)}
         guess = plain.get(name.lower())
+    elif guess is None and name[:1].isupper() and name.lower() in bound:
+        guess = name.lower()
     if guess is not None:
         text = f"A similar name exists: {shorten(guess)}. Compare the two names letter by letter."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
@@ -226,58 +277,6 @@ def _imported(scene: CrashScene) -> set[str]:
 
 
 def _bound(scene: CrashScene) -> set[str]:
-    names = {node.id for node in scene.nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    names |= {node.name for node in scene.nodes if isinstance(node, Function | ast.ClassDef)}
+    names = {name for node in scene.nodes for name in names_bound(node)}
     names |= {node.arg for node in scene.nodes if isinstance(node, ast.arg)}
-    imports = [node for node in scene.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
-    names |= {alias.asname or alias.name.partition(".")[0] for node in imports for alias in node.names}
     return names | {name for name in dir(builtins) if name.islower()} | set(ros_names.MODULE_OF)
-
-
-def why_unbound(scene: CrashScene) -> Cause:
-    """Return the cause of an UnboundLocalError, for example that the function assigns the name on a later line."""
-    match = UNBOUND.search(scene.crash.message)
-    name = match["name"] if match is not None else ""
-    own = scene.own_class
-    if own is not None and name in {each for each, _ in attributes_set(own)}:
-        text = f"{name} belongs to the object. Inside a method, write self.{name}."
-        return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
-    places = list(stores(scene, name))
-    local = sorted(line for line, function in places if function is not None and function is scene.function)
-    if name in _imported(scene) and local:
-        text = f"Line {local[0]} gives {name} another value, so in this function {name} is no longer the module."
-        return Cause("local-name", text, scene.at(local[0]))
-    elsewhere = [(line, each) for line, each in places if each is not None and each is not scene.function]
-    other = [(line, each.name) for line, each in elsewhere if not is_global(each, name)]
-    if own is not None and other and _only_raised(scene, name):
-        line, function = min(other)
-        text = (
-            f"Line {line} assigns {name} without self, so {name} is a local variable of {function}. "
-            f"To keep a value between calls, write self.{name} everywhere."
-        )
-        return Cause("missing-self", text, scene.at(line))
-    outside = any(function is None for _, function in places)
-    if local and local[0] > scene.line and not outside and not _only_raised(scene, name):
-        inner = next((each for each in scene.functions(name) if each.lineno == local[0]), None)
-        if own is not None and inner is not None and inner.args.args[:1] and inner.args.args[0].arg == "self":
-            text = f"{name} is indented too far: it is inside another method, so it is not a method of the class."
-            return Cause("method-in-method", text, scene.at(inner))
-        return Cause("name-too-early", f"{name} gets its value on line {local[0]}, after this line.")
-    if local and local[0] < scene.line and not _only_raised(scene, name):
-        return Cause("local-name", f"Line {local[0]} gives {name} a value, but that line has not run in this call.")
-    kept = "Store a value in self if later calls need the value."
-    if own is None and not outside:
-        kept = f"Give {name} a value before this line."
-    elif own is None:
-        kept = f"To change the variable of the module, the function needs the line global {name}."
-    return Cause("local-name", f"A variable that a function assigns to is local to that function. {kept}")
-
-
-def _only_raised(scene: CrashScene, name: str) -> bool:
-    """Return whether the function that crashed changes the variable only with assignments such as +=."""
-    inside = list(ast.walk(scene.function)) if scene.function is not None else []
-    raised = {id(node.target) for node in inside if isinstance(node, ast.AugAssign)}
-    stored = [
-        node for node in inside if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
-    ]
-    return bool(stored) and all(id(node) in raised for node in stored)

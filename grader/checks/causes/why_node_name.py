@@ -36,10 +36,19 @@ def why_node_name(evidence: Evidence, name: str) -> Cause:
         if other is not None:
             return other
     first = of_name or next(iter(calls), None)
-    giver = (dotted(first.node.func) or "").rpartition(".")[2] if first is not None else ""
-    giver = "super().__init__" if giver in ("", "__init__") else giver
     where = first.where if first is not None else evidence.place("create_node", "__init__")
-    return Cause("node-name", f"The node name is the first argument of {giver}.", where)
+    return Cause("node-name", f"The node name is the {_argument(first)}.", where)
+
+
+def _argument(call: Call | None) -> str:
+    """Return a phrase for the argument that is the node name, with the function that gets this argument."""
+    giver = dotted(call.node.func) if call is not None else None
+    short = "super().__init__" if giver is None or giver.startswith("super") else giver.rpartition(".")[2]
+    if call is not None and any(each.arg == "node_name" for each in call.node.keywords):
+        return f"argument node_name of {shorten(giver) if giver and short == '__init__' else short}"
+    if giver is None or short != "__init__":
+        return f"first argument of {short}"
+    return f"second argument of {shorten(giver)}, after self"
 
 
 def remapping_rule(evidence: Evidence, olds: Collection[str], new: str) -> Where | None:
@@ -57,7 +66,9 @@ def remapping_rule(evidence: Evidence, olds: Collection[str], new: str) -> Where
 
 
 def _name(call: Call) -> object:
-    return evaluate(call.argument(0, "node_name"), call.module.names)
+    """Return the name that the call gives to the node. `Node.__init__(self, "name")` gets it after self."""
+    of_class = (dotted(call.node.func) or "").endswith(".__init__")
+    return evaluate(call.argument(1 if of_class else 0, "node_name"), call.module.names)
 
 
 def _classes(evidence: Evidence) -> Iterator[tuple[Module, ast.ClassDef]]:

@@ -61,6 +61,11 @@ def _group(scene: CrashScene) -> Cause | None:
         group = (dotted(value) or "").rpartition(".")[2] if value is not None else ""
         if group in GROUPS:
             return Cause("class-for-object", f"{group} is a class. {CREATE_OBJECT}", scene.at(value))
+    for call in timers:
+        if [type(getattr(each, "value", None)) for each in call.args[:2]] == [int, int]:
+            number = f"{ast.unparse(call.args[0])}.{ast.unparse(call.args[1])}"
+            text = f"A comma separates two numbers. Write a dot in a decimal number: {shorten(number)}."
+            return Cause("comma-for-dot", text, scene.at(call))
     if by_place:
         text = (
             "The third argument of create_timer is a callback group. A timer passes no arguments to its callback. "

@@ -1,0 +1,53 @@
+"""Explain a TypeError because of a wrong argument of create_timer, or of a similar method of a node."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes import ros_names
+from grader.common.words import shorten
+from grader.submission.constants import dotted
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+NO_ARGUMENT = re.compile(r"<lambda>\(\) missing \d+ required positional arguments?: (?P<names>.*)")
+AN_ARGUMENT = re.compile(r"<lambda>\(\) takes 0 positional arguments but \d+ (?:was|were) given")
+NOT_CALLABLE = "'str' object is not callable"
+NO_PERIOD = "float() argument must be a string or a real number"
+MISSING = re.compile(r"\bNode\.(?P<function>\w+)\(\) missing ")
+
+
+def why_maker_call(scene: CrashScene) -> Cause | None:
+    """Return the cause if create_timer or a similar method got a wrong period, callback or object, else None."""
+    text = scene.crash.message
+    if NO_PERIOD in text and scene.calls_on_line("create_timer"):
+        return Cause("crash", "The first argument of create_timer is the period, a number of seconds.")
+    if NOT_CALLABLE in text:
+        return _callback_in_quotes(scene)
+    if (few := NO_ARGUMENT.search(text)) is not None:
+        passed = f"A lambda is called without a value for {shorten(few['names'])}."
+        general = "A timer passes no argument to its callback; a subscription passes the message."
+        return Cause("callback-parameters", f"{passed} {general}")
+    if AN_ARGUMENT.search(text):
+        return Cause("callback-parameters", "A lambda is called with an argument, but it has no parameter.")
+    missing = MISSING.search(text)
+    name = missing["function"] if missing is not None else ""
+    if name in ros_names.NODE and any(dotted(call.func) == f"Node.{name}" for call in scene.calls_on_line(name)):
+        text = f"This line calls {name} on the class Node. Inside a method of the node, write self.{name}."
+        return Cause("class-for-object", text)
+    return None
+
+
+def _callback_in_quotes(scene: CrashScene) -> Cause | None:
+    """Return the cause if the callback of a timer is a string, else None."""
+    for node in scene.nodes:
+        if isinstance(node, ast.Call) and (dotted(node.func) or "").endswith(".create_timer") and len(node.args) > 1:
+            given = node.args[1]
+            if isinstance(given, ast.Constant) and isinstance(given.value, str):
+                text = "The callback of a timer is the method itself. Write it without quotation marks, after self."
+                return Cause("not-callable", text, scene.at(given))
+    return None
