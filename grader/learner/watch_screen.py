@@ -33,7 +33,6 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
 
     Raises:
         UsageError: the folder does not exist.
-        MachineError: the progress cannot be read or written.
     """
     if not folder.is_dir():
         message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."
@@ -100,17 +99,17 @@ class _Screen:
         self._shown, self._below, self._asked = None, [], False
         if self._console.is_terminal:
             self._console.clear()
+        # Continue watching even if the progress cannot be written.
         try:
             with self._working() as tell:
                 graded = self.watched.grade(tell)
-        except GraderError as error:
-            self._say(str(error))
-        else:
             self._shown = graded.report
             self._render(graded.report, len(notice.splitlines()))
             following = steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
             if following:
                 self._say(following)
+        except GraderError as error:
+            self._say(str(error))
         if notice:
             self._say(f"\n{notice}")
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
@@ -143,10 +142,12 @@ class _Screen:
 
     def _list(self) -> None:
         self._asked = True
-        steps.print_status(self._workspace, self._console)
+        try:
+            steps.print_status(self._workspace, self._console)
+        except GraderError as error:
+            self._say(str(error))
 
     def _hint(self) -> None:
-        # Continue watching even if the progress cannot be written.
         try:
             notice = hints.hint(self._exercise.id, self._workspace)
         except GraderError as error:
