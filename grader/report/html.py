@@ -115,7 +115,8 @@ def _page(evidence: Evidence, report: Report) -> str:
         "skipped": [check for check in shown if check.kind == "skipped"],
         "passed": [check for check in shown if check.kind == "passed"],
         "runs": runs,
-        "drawn_nothing": not runs and any(view.run.made for view in evidences),
+        # A report that names a clock is about a recording, even if that recording cannot be drawn.
+        "drawn_nothing": not runs and (report.clock != "none" or any(view.run.made for view in evidences)),
         "drawn": [run for run in runs if run.graph],
         "logs": logs_of(evidences),
         "again": _again(report),
