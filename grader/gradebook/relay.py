@@ -156,7 +156,7 @@ class Relay:
 def run(order: Order, info: Mapping[str, Any]) -> str:
     """Run the cell until it or nbgrader exits, or until a limit is exceeded.
 
-    Return the limit or the fault of the kernel because of which the cell was stopped, or an empty string.
+    Return the reason if a limit was exceeded or the kernel sent wrong data, or else an empty string.
     """
     limits = Limits()
     over: list[str] = []

@@ -128,7 +128,7 @@ def test_lines_that_the_step_needs_are_shown_until_they_are_added_and_hints_begi
     ).wait_for()
     page.get_by_role("article").filter(has_text="The package has no executable draw_circle.").first.wait_for()
     page.get_by_role("button", name="Hint").click()
-    page.locator("#hints li").get_by_text("The list console_scripts in setup.py needs a line for draw_circle").wait_for()
+    page.locator("#hints li").get_by_text("console_scripts in setup.py needs a line for draw_circle").wait_for()
     page.reload()
     page.locator("#task-state").get_by_text('"draw_circle = my_robot_controller.draw_circle:main"').wait_for()
     assert cut(page) == []
