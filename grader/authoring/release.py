@@ -65,7 +65,10 @@ def released(solution: Path) -> dict[str, ReleasedFile]:
 
 
 def release(solution: Path, to: Path) -> None:
-    """Write the files that students start from to the folder `to`, and delete all other files in it."""
+    """Write the files that students start from to the folder `to`, and delete all other files in it.
+
+    Raises the same error as `released`.
+    """
     wanted = released(solution)
     present = _read(to) if to.is_dir() else tree.Tree()
     for path in present.files.keys() - wanted.keys():
@@ -125,7 +128,10 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """Return the released content of a file, or None if the student creates the file. `name` is for error messages."""
+    """Return the released content of a file, or None if the student creates the file. `name` is for error messages.
+
+    Raises UsageError if a marker is wrong or the released file cannot be parsed.
+    """
     if path.endswith(RECORDED):
         return None
     if path.endswith(".ipynb"):

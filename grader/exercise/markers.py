@@ -82,12 +82,12 @@ def regions(text: str, syntax: Syntax, name: str) -> list[str | Region]:
 
 
 def stripped(text: str, syntax: Syntax, name: str) -> str:
-    """Return the text for students."""
+    """Return the text for students. Raises the same error as `regions`."""
     return "".join("".join(part.starter) if isinstance(part, Region) else part for part in regions(text, syntax, name))
 
 
 def solved(text: str, syntax: Syntax, name: str) -> str:
-    """Return the complete solution, without the markers."""
+    """Return the complete solution, without the markers. Raises the same error as `regions`."""
     return "".join("".join(part.solution) if isinstance(part, Region) else part for part in regions(text, syntax, name))
 
 

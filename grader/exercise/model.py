@@ -191,7 +191,7 @@ def course_folder() -> Path:
 def catalogue(course: Path | None = None) -> dict[str, Path]:
     """Return a mapping from the id of each exercise to its exercise.toml, in the order of the lessons.
 
-    No file is parsed.
+    No file is parsed. Without `course`, raises the same error as `course_folder`.
     """
     folder = course_folder() if course is None else course
     return {file.parent.name: file for file in sorted(folder.glob(f"*/{FILE_NAME}"))}

@@ -52,9 +52,9 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     ideal = workspace.solution(exercise)
     # Later steps change the rest of the package, so compare only files that the learner had to write.
     asked = _asked(exercise)
-    texts = _texts(ideal / exercise.package if exercise.package else ideal)
+    texts = _texts(ideal / exercise.package if exercise.package else ideal, marked=True)
     ours = {path: text for path, text in texts.items() if path in asked}
-    theirs = _texts(existing_work(exercise, root))
+    theirs = _texts(existing_work(exercise, root), marked=False)
     same = [path for path in ours if theirs.get(path) == ours[path]]
     if exercise.numbers is not None and len(same) < len(ours):
         console.print(OTHER_NUMBERS, soft_wrap=True, markup=False)
@@ -82,8 +82,8 @@ def _solution_files(exercise: Exercise) -> Mapping[str, bytes]:
     return read(tree.read_folder, folder / exercise.package if exercise.package else folder).files
 
 
-def _texts(folder: Path) -> dict[str, str]:
-    """Return the text of each UTF-8 file by path, without the markers of the solution."""
+def _texts(folder: Path, *, marked: bool) -> dict[str, str]:
+    """Return the text of each UTF-8 file by path. With `marked`, the markers of the solution are left out."""
     files = read(tree.read_folder, folder).files
     texts = {}
     for path in sorted(files, key=tree.sort_key):
@@ -92,7 +92,7 @@ def _texts(folder: Path) -> dict[str, str]:
         except UnicodeDecodeError:
             continue
         syntax = syntax_of(path)
-        texts[path] = solved(text, syntax, path) if syntax else text
+        texts[path] = solved(text, syntax, path) if marked and syntax else text
     return texts
 
 

@@ -100,7 +100,8 @@ def select(
 ) -> str:
     """Return the requirements of `parts` in pip's format.
 
-    The packages in `without` are left out. If `only` is given, all packages that are not in `only` are left out.
+    The packages in `without` are left out. If `only` is given, all packages that are not in `only` are left out. Raises
+    the same error as `parse`.
     """
     entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
     chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
@@ -139,6 +140,9 @@ def make(*, upgrade: bool = False) -> str:
     """Return the content of a new lock file for pyproject.toml, resolved by uv (over the network).
 
     The versions in the existing lock file are kept if they are still compatible, unless `upgrade` is True.
+
+    Raises:
+        MachineError: uv could not resolve the packages, or resolved other packages for a part than for the whole file.
     """
     with tempfile.TemporaryDirectory() as folder:
         whole = Path(folder, "whole.txt")

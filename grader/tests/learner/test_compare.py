@@ -44,6 +44,16 @@ def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path)
     assert "Afterwards: answers to" in text
 
 
+def test_a_comment_of_the_learner_is_never_a_marker(home: Path) -> None:
+    steps.start("01", None)
+    passed(FIRST)
+    node = home / "ros2_ws/src/my_robot_controller/my_robot_controller/my_first_node.py"
+    node.write_text(f"# begin starter code\n{node.read_text('utf-8')}", "utf-8")
+    said = Console(width=100, record=True, file=io.StringIO())
+    print_solution("01", None, said)
+    assert "-# begin starter code" in said.export_text()
+
+
 def test_a_folder_that_was_deleted_is_named() -> None:
     passed(FIRST)
     with pytest.raises(UsageError, match=r"There is no folder .*my_robot_controller\. `grader start 01` creates it\."):
