@@ -25,6 +25,13 @@ def of_super(scene: CrashScene, name: str) -> Cause | None:
     return Cause("attribute-misspelt", text).fixed_by(fix)
 
 
+def of_rclpy(name: str) -> Cause | None:
+    """Return the cause if a function of rclpy, such as spin, is called as a method of the node, else None."""
+    if name not in ros_names.RCLPY:
+        return None
+    return Cause("attribute-missing", f"{name} belongs to the module rclpy, not to the node. Write rclpy.{name}.")
+
+
 def uncalled_init(made: Function) -> ast.expr | None:
     """Return the statement `super().__init__` without parentheses after it, or None."""
     values = [node.value for node in made.body if isinstance(node, ast.Expr)]

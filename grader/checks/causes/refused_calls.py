@@ -23,6 +23,8 @@ def why_refused(scene: CrashScene) -> Cause | None:
     text = scene.crash.message
     if "must only be called once" in text:
         return Cause("init-twice", f"Call rclpy.init only once.{_calls_of_init(scene)}")
+    if "context is invalid" in text:
+        return Cause("no-init", "ROS 2 was used before rclpy.init or after rclpy.shutdown.")
     if "called for existing topic name" in text:
         return Cause("second-type", "A topic has one type. A program cannot use the same topic name with two types.")
     if "callback should be either be callable" in text:

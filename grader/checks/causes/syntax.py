@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.indentation import why_indented
+from grader.checks.causes.syntax_rules import OTHER_LANGUAGES, RULES
 from grader.checks.edit import applied, at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
@@ -88,7 +89,8 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
         "In a call, the arguments with a name and = come after all arguments without a name.",
     ),
     (r"forgot a comma", "comma-missing", "Put a comma between two arguments and between two items of a list."),
-    (r"instead of '='|cannot assign", "equals", "= assigns a value to a name. == compares two values."),
+    (r"instead of '='|cannot assign|meant \"==\"", "equals", "= assigns a value to a name. == compares two values."),
+    *RULES,
 )
 """Tuples (pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
@@ -96,20 +98,6 @@ NO_BODY = re.compile(r"expected an indented block after .* on line (?P<line>\d+)
 OUTSIDE = re.compile(r"\s*(?:def|class|async def|@|if __name__)\b|\s*@")
 """Matches a line with a definition, a decorator or `if __name__`. Such a line is not the body that Python expects."""
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
-OTHER_LANGUAGES = (
-    (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),
-    (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
-    (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
-    (r"\s*import\s+[\w\s,]+\s+from\s+[\w.]+\s*", "In Python, from comes first: from MODULE import NAME."),
-    (r".*[(,]\s*/\w+/?\w*\s*[,)].*", "A topic name is a string, so it needs quotation marks."),
-    (r"\s*//.*", "In Python, a comment begins with #."),
-    (
-        r".*=\s*new\s+\w+.*",
-        "Python has no keyword new. To create an object, write the class name, followed by ().",
-    ),
-    (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
-)
-"""Tuples (pattern of an unreadable line, cause) for syntax of other languages, and for an else without an if."""
 GAP = re.compile(r"""(?P<left>[\w.]+|"[^"]*"|'[^']*')(?=\s+(?P<right>[\w.]+|"[^"]*"|'[^']*'))""")
 """Matches a value that is followed by spaces and another value. The match ends before the spaces."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
@@ -131,7 +119,9 @@ CONFLICT = r"^(<<<<<<<|>>>>>>>)"
 MIDDLE = "======="
 """The line that Git writes between two conflicting versions. In a docstring, the same line can underline a heading."""
 OTHERWISE = "The mistake is often on the previous line: a bracket, a colon or the indentation."
-"""The cause if Python's message is only "invalid syntax", and the line is not the first line of the file."""
+"""The cause if Python's message is only "invalid syntax", and the mistake may be on a line above this line."""
+ON_THIS_LINE = "The mistake is on this line. Compare it with a similar line that works, character by character."
+"""The cause if Python's message is only "invalid syntax", and Python can read the lines above and this one replaced."""
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
@@ -170,8 +160,21 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
             return Cause(diagnosis, text).fixed_by(_fix(diagnosis, file, unreadable, data))
-    has_previous = unreadable.message == "invalid syntax" and (unreadable.line or 0) > 1
-    return _no_comma(file, unreadable, data) or Cause("syntax-error", OTHERWISE if has_previous else "")
+    otherwise = _otherwise(file, unreadable, data) if unreadable.message == "invalid syntax" else ""
+    return _no_comma(file, unreadable, data) or Cause("syntax-error", otherwise)
+
+
+def _otherwise(file: str, unreadable: Unreadable, data: bytes) -> str:
+    """Return a sentence about the line of the mistake: this line, or perhaps the line before it."""
+    line = _line(unreadable, data)
+    space = line[: len(line) - len(line.lstrip())]
+    new = f"{space}if True:" if line.rstrip().endswith(":") else f"{space}pass"
+    edits = at(Where(file, unreadable.line), line, new) if line.strip() else ()
+    changed = applied({file: data}, edits) if edits else None
+    alone = not re.match(r"\s*(?:elif|else|except|finally|case)\b", line)
+    if alone and changed is not None and _reads_further(file, changed[file], unreadable):
+        return ON_THIS_LINE
+    return OTHERWISE if (unreadable.line or 0) > 1 else ""
 
 
 def _other_sign(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
@@ -225,7 +228,7 @@ def _other_syntax(line: str, message: str) -> Cause | None:
                 "comma-for-dot", text.format(**{key: shorten(word) for key, word in comma.groupdict().items()})
             )
     foreign = next((text for pattern, text in OTHER_LANGUAGES if re.fullmatch(pattern, line)), None)
-    usual = re.search(r"invalid syntax|expected ':'", message)
+    usual = re.search(r"invalid syntax|expected ':'|expected 'except'", message)
     return Cause("syntax-error", foreign) if foreign is not None and usual else None
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import no_entry_point, ros_names
 from grader.checks.causes.attribute_of_none import attribute_of_none
-from grader.checks.causes.attributes_of_class import members, needs_itself, of_super, uncalled_init
+from grader.checks.causes.attributes_of_class import members, needs_itself, of_rclpy, of_super, uncalled_init
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.why_no_field import why_no_field
 from grader.checks.causes.why_not_set import compared
@@ -131,6 +131,8 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
     if owner in ("int", "float") and name == "self":
         comma = Cause("comma-missing", "Separate two arguments with a comma, not with a dot.")
         return comma.fixed_by(at(scene.crash.where, ". self", ", self"))
+    if owner in PLAIN and name == "executor":
+        return Cause("no-object", f"rclpy.spin needs the node, an object of your class. This value is {PLAIN[owner]}.")
     if owner in PLAIN:
         return Cause("attribute-missing", f"This value is {PLAIN[owner]}, which has no {shorten(name)}.")
     return why_no_field(owner, name)
@@ -277,8 +279,12 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("attribute-missing", text).fixed_by(at(scene.crash.where, f".{name}(", f".get_logger().{name}("))
     if name == "publish":
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
-    return _misspelt(scene, name, {*ros_names.NODE, *members(scene, own)}) or Cause(
-        "attribute-missing", f"self.{shorten(name)} is never assigned, and the class has no method with that name."
+    return (
+        of_rclpy(name)
+        or _misspelt(scene, name, {*ros_names.NODE, *members(scene, own)})
+        or Cause(
+            "attribute-missing", f"self.{shorten(name)} is never assigned, and the class has no method with that name."
+        )
     )
 
 

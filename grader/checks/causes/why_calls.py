@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import attributes_set, methods
 from grader.checks.causes.why_init_call import why_init_call
 from grader.checks.causes.why_maker_call import why_maker_call
@@ -137,8 +136,6 @@ def why_type(scene: CrashScene) -> Cause | None:
 def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "isinstance() arg 2 must be a type" in text:
         return message_for_class(scene)
-    if "cannot unpack non-iterable" in text:
-        return comma_for_dot(scene)
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else ""
@@ -264,8 +261,10 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
                         f"{name} gets only the return value of the method."
                     )
                     return Cause("callback-called", text, scene.at(call))
+    more = " Leave out the parentheses after it, or write * to multiply." if kind in ("int", "float") else ""
+    more = " Call its method publish." if kind == "Publisher" else more
     return _module_called(scene, kind) or Cause(
-        "not-callable", f"A value of type {shorten(kind)} is called like a function."
+        "not-callable", f"A value of type {shorten(kind)} is called like a function.{more}"
     )
 
 

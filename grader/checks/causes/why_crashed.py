@@ -74,10 +74,16 @@ def _topic_given(scene: CrashScene) -> tuple[str, int] | None:
 
 
 def _why_no_init(scene: CrashScene) -> Cause:
-    return named_only(scene.evidence, "rclpy.init") or Cause("no-init", scene.crash.meaning)
+    never = "rclpy.init is never called. Call it before you create the node."
+    text = scene.crash.meaning if scene.evidence.code.calls("init") else never
+    return named_only(scene.evidence, "rclpy.init") or Cause("no-init", text)
 
 
 def _why_undeclared(scene: CrashScene) -> Cause:
+    for call in scene.calls_on_line("get_parameters"):
+        if call.args and isinstance(call.args[0], ast.Constant):
+            text = "get_parameters takes a list of names. To read one parameter, use get_parameter."
+            return Cause("parameter-undeclared", text)
     calls = scene.evidence.code.calls("declare_parameter")
     names = [
         call.node.args[0].value for call in calls if call.node.args and isinstance(call.node.args[0], ast.Constant)
@@ -107,6 +113,16 @@ def _why_value(scene: CrashScene) -> Cause | None:
 
 ARGUMENTS = re.compile(r"error: the following arguments are required: (?P<names>.+)")
 """Matches the message with which argparse ends the program if a required argument is missing."""
+
+
+def _why_exit(scene: CrashScene) -> Cause | None:
+    """Return the cause if the code calls exit with the number of this exit code, else None."""
+    for name in ("exit", "_exit"):
+        for call in scene.evidence.code.calls(name):
+            given = call.argument(0, "status")
+            if isinstance(given, ast.Constant) and f"exit code {given.value}" == scene.crash.error:
+                return Cause("crash", "This call of exit ends the program with this exit code.", call.where)
+    return None
 
 
 def _why_usage(scene: CrashScene) -> Cause | None:
@@ -193,7 +209,7 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     scene = CrashScene(evidence, crash)
     special = trailing_comma(scene) or why_main(scene) or why_response(scene) or why_interface(scene)
     special = special or why_rclpy_refused(scene) or why_wrong_object(scene) or why_passed(scene)
-    cause = special or (explain(scene) if explain is not None else None)
+    cause = special or (explain(scene) if explain is not None else None) or _why_exit(scene)
     return cause or Cause("crash", crash.meaning)
 
 

@@ -70,6 +70,10 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     inside = {import_path(each).removesuffix(".py").replace("/", ".") for each in files if each.endswith(".py")}
     own_modules = {each for each in inside if each.count(".") == name.count(".") and not each.endswith("__init__")}
     known = {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES), *own_modules}
+    module, _, last = name.rpartition(".")
+    if ros_names.MODULE_OF.get(last) == module:
+        text = f"{last} is a class in the module {module}, not a module. Write from {module} import {last}."
+        return Cause("module-misspelt", text)
     guess = nearest(name, known, alike=0.8)
     if guess is not None:
         text = f"A similar module exists: {guess}. Compare the two names letter by letter."

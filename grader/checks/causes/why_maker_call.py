@@ -34,6 +34,10 @@ def why_maker_call(scene: CrashScene) -> Cause | None:
         return Cause("callback-parameters", f"{passed} {general}")
     if AN_ARGUMENT.search(text):
         return Cause("callback-parameters", "A lambda is called with an argument, but it has no parameter.")
+    if "parameter must be instance of type" in text and scene.calls_on_line("set_parameters"):
+        return Cause("parameter-itself", "set_parameters takes a list of objects of the class Parameter.")
+    if "Invalid parameter tuple" in text:
+        return Cause("crash", "declare_parameters takes a list of tuples, each with a name and a default value.")
     missing = MISSING.search(text)
     name = missing["function"] if missing is not None else ""
     if name in ros_names.NODE and any(dotted(call.func) == f"Node.{name}" for call in scene.calls_on_line(name)):

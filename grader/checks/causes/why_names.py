@@ -133,7 +133,8 @@ def _in_callback(scene: CrashScene, name: str) -> Cause | None:
 def _of_base(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the name is a base class with a wrong first letter, as in `class Driver(node)`, else None."""
     bases = [base for each in scene.classes if each.lineno == scene.line for base in each.bases]
-    other = next((each for each in _bound(scene) if each != name and each.lower() == name.lower()), None)
+    others = [each for each in sorted(_bound(scene)) if each[:1].isupper() and each.lower() == name.lower()]
+    other = others[0] if others and name[:1].islower() else None
     if other is None or not any(isinstance(each, ast.Name) and each.id == name for each in bases):
         return None
     text = f"A similar name exists: {shorten(other)}. Upper and lower case matter."

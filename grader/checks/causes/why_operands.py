@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 OPERANDS = re.compile(r"unsupported operand type\(s\) for (?P<operator>[^:]+): '(?P<left>\w+)' and '(?P<right>\w+)'")
 CONCATENATED = re.compile(r"can only concatenate (?P<left>\w+) \(not \"(?P<right>\w+)\"\) to \w+")
 CARET = re.compile(r"unsupported operand type\(s\) for \^=?: |ufunc 'bitwise_xor' not supported")
+MULTIPLIED = "can't multiply sequence by non-int of type 'float'"
+COMPARED = re.compile(r"not supported between instances of '(\w+)' and '(\w+)'")
+UNPACKED = re.compile(r"cannot unpack non-iterable (?P<type>\w+) object")
 QUOTES = "'\""
 NUMBERS = frozenset({"int", "float", "float64"})
 
@@ -27,7 +30,7 @@ def why_operands(scene: CrashScene) -> Cause | None:
         return Cause("caret-for-power", "In Python, ^ is not a power. Write x**2 for the square of x.")
     found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
     if found is None:
-        return None
+        return _other_values(scene, scene.crash.message)
     left, right = found["left"], found["right"]
     types = {left, right}
     adds = "operator" not in found.groupdict() or found["operator"].startswith("+")
@@ -49,6 +52,27 @@ def why_operands(scene: CrashScene) -> Cause | None:
     if (comma := comma_for_dot(scene)) is not None:
         return comma
     return Cause("crash", f"This operator cannot combine a value of type {left} with a value of type {right}.")
+
+
+def _other_values(scene: CrashScene, text: str) -> Cause | None:
+    """Return the cause if a value cannot be multiplied, compared, unpacked or used in a loop, else None."""
+    if MULTIPLIED in text:
+        text = "A string or a list cannot be multiplied by a number with a decimal point."
+        return _default_in_quotes(scene) or Cause("crash", text)
+    if (compared := COMPARED.search(text)) is not None and "str" in compared.groups():
+        text = "A number cannot be compared with a string. float(...) turns a string such as '2.0' into a number."
+        return Cause("crash", text) if NUMBERS & set(compared.groups()) else None
+    if (unpacked := UNPACKED.search(text)) is not None:
+        text = f"This line assigns to several names, but there is only one value, of type {unpacked['type']}."
+        return comma_for_dot(scene) or Cause("crash", text)
+    if "'int' object is not iterable" in text and any(_counts(node, scene.line) for node in scene.nodes):
+        return Cause("crash", "A for loop cannot go through a number. To repeat 5 times, write range(5).")
+    return None
+
+
+def _counts(node: ast.AST, line: int) -> bool:
+    """Return whether this is a for statement on the line."""
+    return isinstance(node, ast.For) and node.lineno == line
 
 
 def _default_in_quotes(scene: CrashScene) -> Cause | None:

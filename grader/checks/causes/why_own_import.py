@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.common.words import shorten
+from grader.common.words import nearest, shorten
 from grader.submission.code import import_path, imported_files, module_file
 from grader.submission.where import Where
 
@@ -22,6 +22,11 @@ def why_no_own_module(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the module is in a folder of this package that the build does not install, else None."""
     files = scene.evidence.submission.files
     path = name.replace(".", "/")
+    package = name.partition(".")[0]
+    if "." in name and _has_modules(package, files) and not _has_modules(name, files):
+        guess = nearest(name, [import_path(each).removesuffix(".py").replace("/", ".") for each in files], alike=0.8)
+        if guess is None and module_file(name, files) is None:
+            return Cause("module-missing", f"The package has no file {shorten(path)}.py.")
     # Python names the first part that it cannot import. If this part is a folder, the folder is not installed.
     setup = scene.evidence.setup_py
     if "." not in name or not _has_modules(name, files) or setup is None or setup.packages_line is None:

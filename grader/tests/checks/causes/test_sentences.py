@@ -33,7 +33,7 @@ def cause(line: str, error: str) -> str:
     [
         ("has no item with this index", "x = [1][1]", None, "IndexError: list index out of range"),
         ("A node name has only letters, digits", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
-        ("ROS 2 was used before rclpy.init or after", "x = 1", None, "NotInitializedException: no context"),
+        ("ROS 2 was used before rclpy.init or after", "rclpy.init()", None, "NotInitializedException: no context"),
         (
             "belongs to rospy, the Python library of ROS 1",
             "rclpy.loginfo('a')",

@@ -89,7 +89,7 @@ def test_a_missing_comma_is_named_if_python_can_read_the_line_with_it(line: str,
     found = unreadable_finding("a.py", Unreadable("invalid syntax", 2), f"y = 0\n{line}\n".encode())
     assert found.diagnosis == ("syntax-error" if between is None else "comma-missing")
     assert ("A comma is missing between" in found.cause) == (between is not None)
-    assert ("The mistake is often on the previous line" in found.cause) == (between is None)
+    assert ("The mistake is on this line. Compare it with" in found.cause) == (between is None)
     assert between is None or between in found.cause
 
 
@@ -219,3 +219,43 @@ def test_a_comment_with_an_unknown_encoding_is_named(data: bytes, *, found: bool
     given = unreadable_finding("a.py", unreadable, data)
     assert given.diagnosis == "not-utf8"
     assert given.cause.startswith("The comment with the word coding names an unknown encoding.") == found
+
+
+BELOW = "x = 1\n{}\ny = 2\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "cause"),
+    [
+        ("def go self:\n    pass", "After def and the name, write parentheses."),
+        ("x = 3x", "A name cannot begin with a digit, and no letter can follow a number directly."),
+        ("def go(a=1, b):\n    pass", "The parameters with a default value come after all parameters without a"),
+        ("x = 05", "Write a number without a zero before it: 5, not 05."),
+        ("x = {1: 2, 3}", "Each entry of a dictionary has a key, a colon and a value."),
+        ('x = f"{}"', "In an f-string, write { before a value and } after it."),
+        ("try:\n    pass\nx = 1", "After a try block, write except or finally, with the same indentation as try."),
+        ("try:\n    pass\nexcept A, e:\n    pass", "To give the exception a name, write as: except ValueError as e."),
+        ("x = 1 if y", "This form needs an else: VALUE if CONDITION else OTHER_VALUE."),
+        ("self.a := 5", "Write = to assign a value, not :=."),
+        ("f(a=1, 2)", "In a call, the arguments with a name and = come after all arguments without a name."),
+        ("elseif x == 1:\n    pass", "Python spells else if as one word: elif."),
+        ("f(Twist, /turtle1/cmd_vel, 10)", "A topic name is a string, so it needs quotation marks."),
+        ("/* comment */", "In Python, a comment begins with #."),
+        ("try:\n    pass\ncatch A:\n    pass", "Python has no keyword catch. It has except."),
+        ("function go(self):\n    pass", "In Python, a function begins with the keyword def."),
+        ("Class A:\n    pass", "Python has its keywords in small letters, such as class, def, if and import."),
+        ("int n = 5", "In Python, no word such as var or int comes before the name of a variable."),
+        ("class A extends B:\n    pass", "In Python, the base class is in parentheses: class NAME(BASE)."),
+        ("if x == 1 then:\n    pass", "Python has no then and no do. A colon ends this line."),
+        ("if x => 1:\n    pass", "Python compares with ==, !=, <, <=, > and >=."),
+        ("self->x = 1", "In Python, a dot comes before an attribute, not ->."),
+        ("self.class = 1", "A keyword of Python, such as class or import, cannot be the name of a variable."),
+        ("x = self..y", "The mistake is on this line. Compare it with a similar line that works, character by"),
+        ("elif x == 1:\n    pass", "The mistake is often on the previous line: a bracket, a colon or the indentation."),
+    ],
+)
+def test_a_frequent_mistake_is_explained_by_its_rule(line: str, cause: str) -> None:
+    source = BELOW.format(line).encode()
+    unreadable = read_module("a.py", source).unreadable
+    assert unreadable is not None
+    assert unreadable_finding("a.py", unreadable, source).cause.startswith(cause)

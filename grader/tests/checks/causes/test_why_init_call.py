@@ -90,7 +90,8 @@ MODULE = "TypeError: module() takes at most 2 arguments (3 given)"
 
 @pytest.mark.parametrize(("line", "told"), [("super().__init__", True), ("pass", False)])
 def test_init_without_parentheses_is_not_a_call(line: str, *, told: bool) -> None:
-    source = f"class Driver(Node):\n    def __init__(self):\n        {line}  {LOOK}\n        self.create_timer()  {CRASHED}\n"
+    source = f"class Driver(Node):\n    def __init__(self):\n        {line}  {LOOK}\n"
+    source += f"        self.create_timer()  {CRASHED}\n"
     found = reported(source, "AttributeError: 'Driver' object has no attribute '_default_callback_group'")
     text = "super().__init__ is not called. Write parentheses after it, with the node name inside."
     assert found.diagnosis == "super-init-missing"

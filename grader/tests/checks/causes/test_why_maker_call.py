@@ -27,8 +27,8 @@ from grader.tests.checks.crashes import DRIVER, reported
             "TypeError: Driver.__init__.<locals>.<lambda>() missing 1 required positional argument: 'msg'",
             "callback-parameters",
             (
-                "A lambda is called without a value for 'msg'. A timer passes no argument to its callback; a subscription "
-                "passes the message."
+                "A lambda is called without a value for 'msg'. A timer passes no argument to its callback; a "
+                "subscription passes the message."
             ),
         ),
         (

@@ -1,0 +1,125 @@
+"""Exceptions whose reason is a value on the line: None, a string in place of a number, a module, or an exit code."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import DRIVER, reported
+
+
+@pytest.mark.parametrize(
+    ("line", "error", "cause"),
+    [
+        (
+            "for i in 5: pass",
+            "TypeError: 'int' object is not iterable",
+            "A for loop cannot go through a number. To repeat 5 times, write range(5).",
+        ),
+        (
+            "x, y = msg",
+            "TypeError: cannot unpack non-iterable Pose object",
+            "This line assigns to several names, but there is only one value, of type Pose.",
+        ),
+        (
+            "x = step > '5'",
+            "TypeError: '>' not supported between instances of 'float' and 'str'",
+            "A number cannot be compared with a string. float(...) turns a string such as '2.0' into a number.",
+        ),
+        (
+            "x = text * 2.0",
+            "TypeError: can't multiply sequence by non-int of type 'float'",
+            "A string or a list cannot be multiplied by a number with a decimal point.",
+        ),
+        (
+            "x = math.dist(None, step)",
+            "TypeError: 'NoneType' object is not iterable",
+            "A value in this line is None. A function without a return statement returns None.",
+        ),
+        (
+            "self.declare_parameter('a'); x = self.get_parameter('a').value + 1.0",
+            "TypeError: unsupported operand type(s) for +: 'NoneType' and 'float'",
+            "A parameter that is declared without a default value is None. Give declare_parameter a default value.",
+        ),
+        (
+            "self.get_parameters('speed')",
+            "ParameterNotDeclaredException: Invalid access to undeclared parameter(s): s",
+            "get_parameters takes a list of names. To read one parameter, use get_parameter.",
+        ),
+        (
+            "self.set_parameters({'speed': 1.0})",
+            "TypeError: parameter must be instance of type '<class 'rclpy.parameter.Parameter'>'",
+            "set_parameters takes a list of objects of the class Parameter.",
+        ),
+        (
+            "self.declare_parameters('', ['speed'])",
+            "TypeError: Invalid parameter tuple length at index 0 in parameters list",
+            "declare_parameters takes a list of tuples, each with a name and a default value.",
+        ),
+        (
+            "self.publisher.publish(step)",
+            "RCLError: Failed to publish: publisher's context is invalid",
+            "ROS 2 was used before rclpy.init or after rclpy.shutdown.",
+        ),
+        (
+            "self.create_client(Empty, 'a')",
+            "NotInitializedException: no context",
+            "rclpy.init is never called. Call it before you create the node.",
+        ),
+        (
+            "self.spin()",
+            "AttributeError: 'Driver' object has no attribute 'spin'",
+            "spin belongs to the module rclpy, not to the node. Write rclpy.spin.",
+        ),
+        (
+            "rclpy.spin('driver')",
+            "AttributeError: 'str' object has no attribute 'executor'",
+            "rclpy.spin needs the node, an object of your class. This value is a string.",
+        ),
+        (
+            "x = step(2)",
+            "TypeError: 'int' object is not callable",
+            (
+                "A value of type int is called like a function. Leave out the parentheses after it, or write * to "
+                "multiply."
+            ),
+        ),
+        (
+            "self.publisher(step)",
+            "TypeError: 'Publisher' object is not callable",
+            "A value of type Publisher is called like a function. Call its method publish.",
+        ),
+        (
+            "import geometry_msgs.msg.Twist",
+            "ModuleNotFoundError: No module named 'geometry_msgs.msg.Twist'",
+            (
+                "Twist is a class in the module geometry_msgs.msg, not a module. Write from geometry_msgs.msg import "
+                "Twist."
+            ),
+        ),
+        (
+            "from .shapes import Square",
+            "ModuleNotFoundError: No module named 'my_robot_controller.shapes'",
+            "The package has no file my_robot_controller/shapes.py.",
+        ),
+        (
+            "open('a.txt')",
+            "FileNotFoundError: [Errno 2] No such file or directory: 'a.txt'",
+            "No file has this path. A relative path begins at the folder where the program started.",
+        ),
+    ],
+)
+def test_a_wrong_value_is_explained(line: str, error: str, cause: str) -> None:
+    assert reported(DRIVER.format(line=line), error).cause == cause
+
+
+def test_none_at_first_is_told_for_an_argument_too() -> None:
+    source = DRIVER.replace("self.count = 0", "self.last = None").format(line="x = math.dist(self.last, step)")
+    source = source.replace("# crashed\n", "# crashed\n        self.last = step\n")
+    found = reported(source, "TypeError: 'NoneType' object is not iterable")
+    assert found.cause == "self.last is None until it gets a value. Check for None before you compute with it."
+
+
+def test_a_missing_import_of_node_is_not_called_a_wrong_letter() -> None:
+    source = "class Driver(Node):  # crashed\n    pass\n\ndef main():\n    node = Driver()\n"
+    found = reported(source, "NameError: name 'Node' is not defined")
+    assert found.cause == "The file does not import Node, which is in the module rclpy.node."
