@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import codecs
 import configparser
+import re
 
 from grader.checks.cause import Cause
 from grader.checks.causes.syntax import UTF_16
 from grader.submission.where import Where
 
 FILE = "setup.cfg"
+SECTION = re.compile(r"\W*(?:develop|install)\W*$")
+"""Matches a line that has only the name of a section, with any characters around it."""
 
 
 def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
@@ -26,6 +29,8 @@ def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
         return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, data.count(b"\n", 0, error.start) + 1))
     except configparser.MissingSectionHeaderError as error:
         text = "A line with a section, such as [develop], must come before this line."
+        if SECTION.match(error.line):
+            text = "A section needs square brackets on both sides of its name, as in [develop]."
         return Cause("setup-cfg", text, Where(FILE, error.lineno))
     except configparser.ParsingError as error:
         return Cause("setup-cfg", "This line is neither [SECTION] nor NAME=VALUE.", Where(FILE, error.errors[0][0]))

@@ -34,6 +34,8 @@ MISTAKES = (
         "In XML, the name of a tag follows < without a space. Write &lt; for the character < itself.",
     ),
     ("", r"<[^>]*\s[\w:]+=(?![\"'\s])", "The value of an attribute needs quotation marks."),
+    ("", r"<!--.*--.*-->", "A comment cannot contain two hyphens in a row."),
+    ("", r"</?\w[^<>]*<", "A tag on this line does not end: > is missing before the next <."),
 )
 """Tuples (pattern of the problem, pattern of the line, cause). The first pair of patterns that match is used."""
 UNKNOWN_TAG = re.compile(
@@ -44,6 +46,19 @@ TAGS = (
     *("depend", "exec_depend", "build_depend", "build_export_depend", "buildtool_depend", "test_depend"),
 )
 """The tags that the grader suggests in place of an unknown tag."""
+RULES = (
+    (
+        "naming conventions",
+        "name",
+        "A package name has only small letters, digits and underscores. It begins with a letter.",
+    ),
+    ("version conventions", "version", "A version is three numbers with dots between them, such as 0.1.0."),
+    ("Invalid email", "maintainer", "An email address has the form NAME@DOMAIN, such as student@example.com."),
+    ('attribute "email"', "maintainer", 'Write the email address in the first tag: <maintainer email="NAME@DOMAIN">.'),
+    ("format version", "package", 'Write format="3" in the tag <package>.'),
+    ("neither be empty", "license", "Write the name of the license between <license> and </license>."),
+)
+"""Tuples (pattern of the problem, tag whose line must change, cause)."""
 TWICE = re.compile(r"dependency on ['\"](?P<name>[^'\"]{1,100})['\"] is redundant")
 ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 
@@ -72,6 +87,12 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
         return Cause("package-xml-invalid", cause, Where(FILE, line_of(data, f"<{other['tag']}")))
     if XML.search(problem):
         return _malformed(data, problem, manifest.line)
+    for pattern, name, cause in RULES:
+        if pattern in problem:
+            return Cause("package-xml-invalid", cause, Where(FILE, line_of(data, rf"<{name}\b")))
+    if "declaration not at start" in problem:
+        cause = "The first line must begin with <?xml. Remove the spaces and lines before it."
+        return Cause("package-xml-invalid", cause, Where(FILE, manifest.line))
     return Cause("package-xml-invalid", where=Where(FILE, manifest.line or line_of(data, "<package")))
 
 
@@ -94,6 +115,9 @@ def _malformed(data: bytes, problem: str, line: int | None) -> Cause:
         cause = f"</{shorten(last, 30)}> on line {at} closes the first tag. No text or tag may follow it"
         more = text.strip() if line > at else ""
         cause += f', but line {line} contains "{shorten(more, 30)}".' if more else "."
+    elif "invalid token" in problem and re.search(r"<[^>]*$", _line_text(data, (line or 0) - 1).partition("<!--")[0]):
+        line = (line or 0) - 1
+        cause = f"The last tag on line {line} does not end: > is missing."
     elif re.search("mismatched tag|no element", problem) and open_tag(data)[0]:
         name, line = open_tag(data)
         cause = f"<{shorten(name, 30)}> on line {line} has no closing tag </{shorten(name, 30)}> in the right place."

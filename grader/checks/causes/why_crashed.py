@@ -120,7 +120,7 @@ def _why_exit(scene: CrashScene) -> Cause | None:
     for name in ("exit", "_exit"):
         for call in scene.evidence.code.calls(name):
             given = call.argument(0, "status")
-            if isinstance(given, ast.Constant) and f"exit code {given.value}" == scene.crash.error:
+            if isinstance(given, ast.Constant) and f"exit code {given.value!r}" == scene.crash.error:
                 return Cause("crash", "This call of exit ends the program with this exit code.", call.where)
     return None
 

@@ -16,6 +16,12 @@ RIGHT = "[develop]\nscript_dir=$base/lib/p\n[install]\ninstall_scripts=$base/lib
         (RIGHT.encode("utf-8-sig"), "without a byte order mark", "setup.cfg"),
         (f"# Namen\n# f\xfcr\n{RIGHT}".encode("latin-1"), "Save the file as UTF-8.", "setup.cfg:2"),
         (RIGHT.partition("\n")[2].encode(), "such as [develop], must come before this line.", "setup.cfg:1"),
+        (
+            RIGHT.replace("[develop]", "[develop").encode(),
+            "A section needs square brackets on both sides",
+            "setup.cfg:1",
+        ),
+        (RIGHT.replace("[develop]", "(develop)").encode(), "A section needs square brackets on both", "setup.cfg:1"),
         (f"{RIGHT}install_lib\n".encode(), "This line is neither [SECTION] nor NAME=VALUE.", "setup.cfg:5"),
         (
             f"{RIGHT}install_scripts=x\n".encode(),

@@ -144,3 +144,38 @@ def test_a_repeated_depend_is_enough_once() -> None:
 def test_a_package_xml_that_cannot_be_read_is_explained(files: Files, diagnosis: str, where: str, cause: str) -> None:
     found = of("package-xml", files)
     assert (found.diagnosis, str(found.where), found.cause) == (diagnosis, where, cause)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "cause"),
+    [
+        (
+            "<name>my_robot_controller",
+            "<name>My Robot",
+            3,
+            "A package name has only small letters, digits and underscores. It begins with a letter.",
+        ),
+        ("0.1.0", "0.1", 4, "A version is three numbers with dots between them, such as 0.1.0."),
+        (
+            "student@example.com",
+            "student",
+            6,
+            "An email address has the form NAME@DOMAIN, such as student@example.com.",
+        ),
+        (
+            ' email="student@example.com"',
+            "",
+            6,
+            'Write the email address in the first tag: <maintainer email="NAME@DOMAIN">.',
+        ),
+        ('format="3"', 'format="4"', 2, 'Write format="3" in the tag <package>.'),
+        ("MIT", "", 7, "Write the name of the license between <license> and </license>."),
+        ("<?xml ", "\n<?xml ", 2, "The first line must begin with <?xml. Remove the spaces and lines before it."),
+        ("<depend>rclpy", "<depend rclpy", 8, "A tag on this line does not end: > is missing before the next <."),
+        ("rclpy</depend>", "rclpy</depend", 8, "The last tag on line 8 does not end: > is missing."),
+        ("<depend>rclpy", "<!-- a -- b --><depend>rclpy", 8, "A comment cannot contain two hyphens in a row."),
+    ],
+)
+def test_a_broken_rule_is_explained_on_its_line(old: str, new: str, line: int, cause: str) -> None:
+    found = of("package-xml", xml(old, new))
+    assert (found.cause, found.where is not None and found.where.line) == (cause, line)

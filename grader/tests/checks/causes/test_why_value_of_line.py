@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from grader.checks.causes.crash import Crash
+from grader.checks.causes.why_crashed import crash_finding
 from grader.tests.checks.crashes import DRIVER, reported
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+from grader.tests.checks.shapes import crashed
 
 
 @pytest.mark.parametrize(
@@ -123,3 +129,14 @@ def test_a_missing_import_of_node_is_not_called_a_wrong_letter() -> None:
     source = "class Driver(Node):  # crashed\n    pass\n\ndef main():\n    node = Driver()\n"
     found = reported(source, "NameError: name 'Node' is not defined")
     assert found.cause == "The file does not import Node, which is in the module rclpy.node."
+
+
+def test_a_call_of_exit_explains_the_exit_code() -> None:
+    source = "import sys\n\ndef main():\n    sys.exit(3)\n"
+    trial = recording([], end=replace(crashed(0.5), exit_code=3))
+    given = evidence(trial, submission({NODE_FILE: source}))
+    found = crash_finding(given, Crash("exit code 3", ""), "It ended.", "It runs.")
+    assert found.cause == "This call of exit ends the program with this exit code."
+    assert (found.where and found.where.line) == 4
+    other = crash_finding(given, Crash("exit code 1", ""), "It ended.", "It runs.")
+    assert not other.cause
