@@ -46,6 +46,7 @@ MEANINGS = {
     "InvalidQoSProfileException": "A QoSProfile needs a depth, which is the size of the queue.",
     "InvalidParameterException": "The name of a parameter is not valid, for example because it is empty.",
     "InvalidParameterValueException": "The value is outside the range of the parameter, or a callback refused it.",
+    "InvalidServiceNameException": "In a service name, use only letters, digits, underscores and slashes.",
     "InvalidTopicNameException": "In a topic name, use only letters, digits, underscores and slashes.",
     "InvalidParameterTypeException": "A parameter has the type of its default value: 2 is an integer, 2.0 is a float.",
     "KeyError": "The dictionary has no such key, or the set has no such item.",

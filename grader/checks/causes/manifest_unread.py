@@ -55,7 +55,7 @@ RULES = (
     ("version conventions", "version", "A version is three numbers with dots between them, such as 0.1.0."),
     ("Invalid email", "maintainer", "An email address has the form NAME@DOMAIN, such as student@example.com."),
     ('attribute "email"', "maintainer", 'Write the email address in the first tag: <maintainer email="NAME@DOMAIN">.'),
-    ("format version", "package", 'Write format="3" in the tag <package>.'),
+    ("package.xml format version", "package", 'Write format="3" in the tag <package>.'),
     ("neither be empty", "license", "Write the name of the license between <license> and </license>."),
 )
 """Tuples (pattern of the problem, tag whose line must change, cause)."""

@@ -140,6 +140,8 @@ FIELDS = {
 OTHERS = {
     "Publisher": ("publish",),
     "Subscription": (),
+    "Client": ("call_async", "wait_for_service", "service_is_ready"),
+    "Service": (),
     "Timer": ("cancel", "reset"),
     "RcutilsLogger": ("debug", "info", "warning", "warn", "error", "fatal"),
 }

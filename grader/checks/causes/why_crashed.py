@@ -182,6 +182,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "ImportError": why_no_import,
     "FileNotFoundError": why_no_file,
     "InvalidNodeNameException": _always("node-name-invalid"),
+    "InvalidServiceNameException": _why_no_topic,
     "InvalidTopicNameException": _why_no_topic,
     "ModuleNotFoundError": why_no_import,
     "NameError": why_no_name,

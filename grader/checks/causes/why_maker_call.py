@@ -14,6 +14,8 @@ from grader.submission.constants import dotted
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
+PLACES = {"create_timer": 1, "create_service": 2}
+"""Maps a method of the node to the position (from 0) of the callback among its arguments."""
 NO_ARGUMENT = re.compile(r"<lambda>\(\) missing \d+ required positional arguments?: (?P<names>.*)")
 AN_ARGUMENT = re.compile(r"<lambda>\(\) takes 0 positional arguments but \d+ (?:was|were) given")
 NOT_CALLABLE = "'str' object is not callable"
@@ -47,11 +49,14 @@ def why_maker_call(scene: CrashScene) -> Cause | None:
 
 
 def _callback_in_quotes(scene: CrashScene) -> Cause | None:
-    """Return the cause if the callback of a timer is a string, else None."""
+    """Return the cause if the callback of a timer or a service is a string, else None."""
     for node in scene.nodes:
-        if isinstance(node, ast.Call) and (dotted(node.func) or "").endswith(".create_timer") and len(node.args) > 1:
-            given = node.args[1]
-            if isinstance(given, ast.Constant) and isinstance(given.value, str):
-                text = "The callback of a timer is the method itself. Write it without quotation marks, after self."
-                return Cause("not-callable", text, scene.at(given))
+        maker = getattr(node.func, "attr", "") if isinstance(node, ast.Call) else ""
+        if not isinstance(node, ast.Call) or len(node.args) <= PLACES.get(maker, len(node.args)):
+            continue
+        given = node.args[PLACES[maker]]
+        if isinstance(given, ast.Constant) and isinstance(given.value, str):
+            kind = maker.removeprefix("create_")
+            text = f"The callback of a {kind} is the method itself. Write it without quotation marks, after self."
+            return Cause("not-callable", text, scene.at(given))
     return None

@@ -60,6 +60,7 @@ def why_no_name(scene: CrashScene) -> Cause | None:
         or _of_string(scene, name)
         or _in_other_capitals(scene, name)
         or imported_otherwise(scene, name)
+        or _of_interface(scene, name)
         or _of_import(scene, name)
         or _of_from_import(scene, name)
         or bound_elsewhere(scene, name)
@@ -119,6 +120,15 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
         return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
     return None
+
+
+def _of_interface(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if a part of a service or an action is created without the name of its type, else None."""
+    if name not in ("Request", "Response", "Goal") or not _is_called(scene, name) or any(stores(scene, name)):
+        return None
+    of = "an action" if name == "Goal" else "a service"
+    text = f"{name} is a part of {of}. Write the name of the type and a dot before it, as in TYPE.{name}()."
+    return Cause("name-undefined", text)
 
 
 def _in_callback(scene: CrashScene, name: str) -> Cause | None:

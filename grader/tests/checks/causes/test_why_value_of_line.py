@@ -17,6 +17,62 @@ from grader.tests.checks.shapes import crashed
     ("line", "error", "cause"),
     [
         (
+            "self.create_service(SetBool(), 'a', self.send)",
+            "NotImplementedError: Service classes can not be instantiated",
+            "create_service needs the class itself. A class name with () creates an object: leave out the ().",
+        ),
+        (
+            "self.create_service(RotateAbsolute, 'a', self.send)",
+            "RuntimeError: The service type provided is not valid (<class 'turtlesim.action._rotate.A'>)",
+            "This is the type of an action. create_service is for services. For an action, use ActionClient.",
+        ),
+        (
+            "self.create_client(Twist, 'a')",
+            "RuntimeError: The service type provided is not valid (<class 'geometry_msgs.msg._twist.Twist'>)",
+            "This is the type of a message. A service needs the type of a service, such as SetBool.",
+        ),
+        (
+            "ActionClient('driver', RotateAbsolute, 'a')",
+            "AttributeError: 'str' object has no attribute 'default_callback_group'",
+            "The first argument of ActionClient is the node. Inside a method of the node, write self.",
+        ),
+        (
+            "future.wait()",
+            "AttributeError: 'Future' object has no attribute 'wait'",
+            "A future has no method wait. Pass the method that needs the result to add_done_callback.",
+        ),
+        (
+            "self.client.call_asinc(step)",
+            "AttributeError: 'Client' object has no attribute 'call_asinc'",
+            (
+                "A similar name exists: call_async. Compare the two names letter by letter, including upper and lower "
+                "case."
+            ),
+        ),
+        (
+            "self.create_service(SetBool, '/pau se', self.send)",
+            "InvalidServiceNameException: Invalid service name",
+            (
+                'In a service name, use only letters, digits, underscores and slashes. The name here is "/pau se", '
+                "with a space."
+            ),
+        ),
+        (
+            "self.create_action_client(A, 'a')",
+            "AttributeError: 'Driver' object has no attribute 'create_action_client'",
+            ("A node has no method for this. Import the class ActionClient from rclpy.action, and call the class."),
+        ),
+        (
+            "step = Request()",
+            "NameError: name 'Request' is not defined",
+            "Request is a part of a service. Write the name of the type and a dot before it, as in TYPE.Request().",
+        ),
+        (
+            "self.create_service(SetBool, 'a', 'send')",
+            "TypeError: 'str' object is not callable",
+            "The callback of a service is the method itself. Write it without quotation marks, after self.",
+        ),
+        (
             "for i in 5: pass",
             "TypeError: 'int' object is not iterable",
             "A for loop cannot go through a number. To repeat 5 times, write range(5).",
@@ -140,3 +196,11 @@ def test_a_call_of_exit_explains_the_exit_code() -> None:
     assert (found.where and found.where.line) == 4
     other = crash_finding(given, Crash("exit code 1", ""), "It ended.", "It runs.")
     assert not other.cause
+
+
+def test_a_callback_of_a_service_creates_a_response() -> None:
+    source = DRIVER.replace("self.count = 0", "self.create_service(SetBool, 'a', self.send)")
+    found = reported(
+        source.format(line="r = SetBool()"), "NotImplementedError: Service classes can not be instantiated"
+    )
+    assert found.cause.endswith("add .Response before the parentheses.")
