@@ -143,7 +143,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "unexpected-keyword": "a call has a keyword argument for which the function has no parameter",
         "log-arguments": "the logger is called with several arguments, as print would be",
         "string-and-number": "a string and a number are added with +, or something other than a string is logged",
-        "queue-size": "the queue size is not a whole number",
+        "queue-size": "the queue size is not a whole number, or is negative",
         "not-callable": "something that is not a function is called, or is passed as a callback",
         "publish-other": "publish is called with something other than a message of the right type",
     },

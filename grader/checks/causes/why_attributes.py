@@ -132,7 +132,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
         comma = Cause("comma-missing", "Separate two arguments with a comma, not with a dot.")
         return comma.fixed_by(at(scene.crash.where, ". self", ", self"))
     if owner in PLAIN and name == "executor":
-        return Cause("no-object", f"rclpy.spin needs the node, an object of your class. This value is {PLAIN[owner]}.")
+        return Cause("crash", f"rclpy.spin needs the node, an object of your class. This value is {PLAIN[owner]}.")
     if owner in PLAIN:
         return Cause("attribute-missing", f"This value is {PLAIN[owner]}, which has no {shorten(name)}.")
     return why_no_field(owner, name)

@@ -73,7 +73,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     module, _, last = name.rpartition(".")
     if ros_names.MODULE_OF.get(last) == module:
         text = f"{last} is a class in the module {module}, not a module. Write from {module} import {last}."
-        return Cause("module-misspelt", text)
+        return Cause("import-wrong-place", text)
     guess = nearest(name, known, alike=0.8)
     if guess is not None:
         text = f"A similar module exists: {guess}. Compare the two names letter by letter."

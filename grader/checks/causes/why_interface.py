@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 WRAPPED = {"_FeedbackMessage": "feedback", "_GetResult_Response": "result"}
 """Maps the end of a type name to the field of this type that contains the feedback or the result."""
+OF_OTHER_FUTURES = ("wait", "get", "join", "then", "add_callback")
+"""The methods of futures in other libraries and languages, which learners use instead of add_done_callback."""
 OF_A_RESULT = ("status", "result")
 NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
 TAKE_A_TYPE = ("create_service", "create_client", "ActionClient", "create_publisher", "create_subscription")
@@ -43,9 +45,9 @@ def why_interface(scene: CrashScene) -> Cause | None:
         return Cause("wrong-type", text)
     if name == "default_callback_group" and scene.calls_on_line("ActionClient"):
         text = "The first argument of ActionClient is the node. Inside a method of the node, write self."
-        return Cause("arguments-swapped", text)
+        return Cause("crash", text)
     if owner == "Future":
-        return _of_future(scene, name)
+        return _of_future(name)
     inner = next((field for ending, field in WRAPPED.items() if owner.endswith(ending)), None)
     if inner is None or name in OF_A_RESULT:
         return None
@@ -53,8 +55,8 @@ def why_interface(scene: CrashScene) -> Cause | None:
     return Cause("message-field", text)
 
 
-def _of_future(scene: CrashScene, name: str) -> Cause:
-    if scene.calls_on_line(name):
+def _of_future(name: str) -> Cause:
+    if name in OF_OTHER_FUTURES:
         text = f"A future has no method {shorten(name)}. Pass the method that needs the result to add_done_callback."
         return Cause("attribute-missing", text)
     text = (

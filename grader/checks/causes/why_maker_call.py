@@ -37,7 +37,7 @@ def why_maker_call(scene: CrashScene) -> Cause | None:
     if AN_ARGUMENT.search(text):
         return Cause("callback-parameters", "A lambda is called with an argument, but it has no parameter.")
     if "parameter must be instance of type" in text and scene.calls_on_line("set_parameters"):
-        return Cause("parameter-itself", "set_parameters takes a list of objects of the class Parameter.")
+        return Cause("crash", "set_parameters takes a list of objects of the class Parameter.")
     if "Invalid parameter tuple" in text:
         return Cause("crash", "declare_parameters takes a list of tuples, each with a name and a default value.")
     missing = MISSING.search(text)

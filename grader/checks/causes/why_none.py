@@ -41,7 +41,7 @@ def why_none(scene: CrashScene) -> Cause | None:
         return Cause("none-before-message", text)
     if any(isinstance(each, ast.Attribute) and each.attr == "value" for each in values) and _reads_parameter(scene):
         text = "A parameter that is declared without a default value is None. Give declare_parameter a default value."
-        return Cause("parameter-itself", text)
+        return Cause("none-before-message", text)
     if of_operator:
         return Cause("crash", "An operand is None, which is not a number.")
     return Cause("crash", "A value in this line is None. A function without a return statement returns None.")
