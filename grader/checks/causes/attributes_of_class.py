@@ -25,12 +25,12 @@ def of_super(scene: CrashScene, name: str) -> Cause | None:
     return Cause("attribute-misspelt", text).fixed_by(fix)
 
 
-def of_rclpy(name: str) -> Cause | None:
+def of_rclpy(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if a function or class of rclpy, such as spin, is used as a method of the node, else None."""
     if name in ("ActionClient", "create_action_client"):
         text = "A node has no method for this. Import the class ActionClient from rclpy.action, and call the class."
         return Cause("attribute-missing", text)
-    if name not in ros_names.RCLPY:
+    if name not in ros_names.RCLPY or name in ("init", "node") or not scene.calls_on_line(name):
         return None
     return Cause("attribute-missing", f"{name} belongs to the module rclpy, not to the node. Write rclpy.{name}.")
 

@@ -31,7 +31,7 @@ RULES: tuple[tuple[str, Diagnosis, str], ...] = (
         "Each entry of a dictionary has a key, a colon and a value.",
     ),
     (
-        r"f-string",
+        r"f-string: (?:expecting '}'|single '}'|empty expression|valid expression required)",
         "syntax-error",
         "In an f-string, write { before a value and } after it. For the character { or } itself, write {{ or }}.",
     ),
@@ -46,7 +46,11 @@ RULES: tuple[tuple[str, Diagnosis, str], ...] = (
         "To give the exception a name, write as: except ValueError as e. Several types need parentheses.",
     ),
     (r"expected 'else' after 'if'", "syntax-error", "This form needs an else: VALUE if CONDITION else OTHER_VALUE."),
-    (r"assignment expressions", "equals", "Write = to assign a value, not :=."),
+    (
+        r"assignment expressions",
+        "equals",
+        "Only a plain name can be before :=. To assign a value on a line of its own, write =.",
+    ),
 )
 """Tuples (pattern of Python's message, diagnosis, cause). syntax.py uses them after its own patterns."""
 KEYWORDS = "|".join(word for word in keyword.kwlist if word.islower())

@@ -280,7 +280,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     if name == "publish":
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
     return (
-        of_rclpy(name)
+        of_rclpy(scene, name)
         or _misspelt(scene, name, {*ros_names.NODE, *members(scene, own)})
         or Cause(
             "attribute-missing", f"self.{shorten(name)} is never assigned, and the class has no method with that name."

@@ -236,7 +236,7 @@ BELOW = "x = 1\n{}\ny = 2\n"
         ("try:\n    pass\nx = 1", "After a try block, write except or finally, with the same indentation as try."),
         ("try:\n    pass\nexcept A, e:\n    pass", "To give the exception a name, write as: except ValueError as e."),
         ("x = 1 if y", "This form needs an else: VALUE if CONDITION else OTHER_VALUE."),
-        ("self.a := 5", "Write = to assign a value, not :=."),
+        ("self.a := 5", "Only a plain name can be before :=. To assign a value on a line of its own, write =."),
         ("f(a=1, 2)", "In a call, the arguments with a name and = come after all arguments without a name."),
         ("elseif x == 1:\n    pass", "Python spells else if as one word: elif."),
         ("f(Twist, /turtle1/cmd_vel, 10)", "A topic name is a string, so it needs quotation marks."),

@@ -204,3 +204,10 @@ def test_a_callback_of_a_service_creates_a_response() -> None:
         source.format(line="r = SetBool()"), "NotImplementedError: Service classes can not be instantiated"
     )
     assert found.cause.endswith("add .Response before the parentheses.")
+
+
+@pytest.mark.parametrize(("line", "told"), [("self.spin()", True), ("print(self.ok)", False), ("self.node()", False)])
+def test_only_a_called_function_of_rclpy_is_said_to_belong_to_rclpy(line: str, *, told: bool) -> None:
+    name = line.partition("self.")[2].strip("()")
+    found = reported(DRIVER.format(line=line), f"AttributeError: 'Driver' object has no attribute '{name}'")
+    assert ("belongs to the module rclpy" in found.cause) == told
