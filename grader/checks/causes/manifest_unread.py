@@ -90,7 +90,7 @@ def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
     for pattern, name, cause in RULES:
         if pattern in problem:
             return Cause("package-xml-invalid", cause, Where(FILE, line_of(data, rf"<{name}\b")))
-    if "declaration not at start" in problem:
+    if "not at start" in problem:
         cause = "The first line must begin with <?xml. Remove the spaces and lines before it."
         return Cause("package-xml-invalid", cause, Where(FILE, manifest.line))
     return Cause("package-xml-invalid", where=Where(FILE, manifest.line or line_of(data, "<package")))

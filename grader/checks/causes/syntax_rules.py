@@ -45,7 +45,7 @@ RULES: tuple[tuple[str, Diagnosis, str], ...] = (
         "syntax-error",
         "To give the exception a name, write as: except ValueError as e. Several types need parentheses.",
     ),
-    (r"expected 'else' after 'if'", "syntax-error", "This form needs an else: VALUE if CONDITION else OTHER_VALUE."),
+    (r"expected 'else' after", "syntax-error", "This form needs an else: VALUE if CONDITION else OTHER_VALUE."),
     (
         r"assignment expressions",
         "equals",

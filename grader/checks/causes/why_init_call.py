@@ -40,7 +40,7 @@ def why_init_call(scene: CrashScene) -> Cause | None:
             only = "Pass only the node name to super().__init__, or write names such as namespace= before the others."
             return Cause("too-many-arguments", only)
     if keyword is not None:
-        more = " Pass the node name as the first argument, as a string only." if "name" in keyword["name"] else ""
+        more = " Pass the node name as the first argument, without a name and =." if "name" in keyword["name"] else ""
         return Cause("unexpected-keyword", f"Node has no parameter {keyword['name']}.{more}")
     if NOT_A_STRING in text and call is not None:
         return Cause("crash", "The node name must be a string in quotation marks, or a variable with a string.")

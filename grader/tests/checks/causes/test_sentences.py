@@ -32,6 +32,8 @@ def cause(line: str, error: str) -> str:
     ("words", "true", "near", "error"),
     [
         ("has no item with this index", "x = [1][1]", None, "IndexError: list index out of range"),
+        ("A number is too large for this operation.", "x = 2.0 ** 9999", None, "OverflowError: out of range"),
+        ("A function calls itself again and again,", "self.send()", None, "RecursionError: maximum recursion depth"),
         ("A node name has only letters, digits", "x = 1", None, "InvalidNodeNameException: Invalid node name"),
         ("ROS 2 was used before rclpy.init or after", "rclpy.init()", None, "NotInitializedException: no context"),
         (

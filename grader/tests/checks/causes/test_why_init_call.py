@@ -49,7 +49,7 @@ MANY = "TypeError: Node.__init__() takes 2 positional arguments but 3 were given
             'super().__init__(name="driver")',
             "TypeError: Node.__init__() got an unexpected keyword argument 'name'",
             "unexpected-keyword",
-            "Node has no parameter name. Pass the node name as the first argument, as a string only.",
+            "Node has no parameter name. Pass the node name as the first argument, without a name and =.",
         ),
         (
             "super().__init__(42)",
