@@ -90,7 +90,7 @@ def replace(path: Path, text: str) -> None:
 def digest() -> str:
     """Return a hash of the files that pin versions, of pyproject.toml, and of the files that are copied into .venv."""
     whole = hashlib.sha256()
-    for name in ("requirements.lock", "grader/setup/numpy.txt", "pyproject.toml", *COPIED):
+    for name in ("requirements.lock", "grader/setup/numpy.txt", "grader/setup/pytest.txt", "pyproject.toml", *COPIED):
         place = ROOT / name
         for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
             if path.is_file():

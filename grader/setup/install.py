@@ -38,6 +38,9 @@ _OLDEST_NUMPY = (1, 25)
 """The oldest version of numpy that matplotlib, a dependency of the grader, supports."""
 _NUMPY = Path(__file__).with_name("numpy.txt")
 """The last version of numpy 1, in pip's format. Extensions that were built for an older numpy 1 cannot use numpy 2."""
+_PYTEST = Path(__file__).with_name("pytest.txt")
+"""The last version of pytest 8, in pip's format. launch_testing of ROS 2 Jazzy has a plugin that pytest 9 refuses, so
+`colcon test` with pytest 9 would run no test."""
 _BOOTSTRAPPER, _BOOTSTRAPPED = "ros_wheels_bootstrapper", "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 """The module that each interpreter with the ROS wheels imports, and the variable that is set once the module has
 run."""
@@ -76,7 +79,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     text = lock.LOCK_FILE.read_text(encoding="utf-8")
     if sourced:
         parts = [part for part in parts if part != "ros"]
-    without = lock.SOURCED_BRINGS if sourced else frozenset()
+    without = lock.SOURCED_BRINGS | {"pytest"} if sourced else frozenset()
 
     begin = time.monotonic()
     say("Installing the installer (uv)")
@@ -84,6 +87,8 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
 
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
     selected = lock.select(text, parts, without=without)
+    if sourced:
+        selected += _PYTEST.read_text(encoding="utf-8")
     if sourced and numpy_is_missing():
         say("The system has no numpy that matplotlib can use: .venv gets one, and the system is not changed")
         selected += _NUMPY.read_text(encoding="utf-8")

@@ -31,8 +31,13 @@ INDEX = "share/ament_index/resource_index/packages"
 
 
 @pytest.fixture
-def ros() -> installation.Ros:
-    return installation.find_ros()
+def ros(monkeypatch: pytest.MonkeyPatch) -> installation.Ros:
+    """Return a ROS 2 without turtlesim, so that the interfaces must be built, even if the sourced ROS 2 has it."""
+    found, has_turtlesim = installation.find_ros(), installation.has_turtlesim
+    monkeypatch.setattr(
+        installation, "has_turtlesim", lambda ros: ros.prefixes != found.prefixes and has_turtlesim(ros)
+    )
+    return found
 
 
 @pytest.fixture

@@ -275,14 +275,18 @@ def test_a_failed_import_after_an_update_names_the_command_that_sets_up_again(co
     assert bootstrap.outdated(ValueError()) is None
 
 
-@pytest.mark.parametrize(
-    "changed", ["requirements.lock", "grader/setup/numpy.txt", "pyproject.toml", "grader/setup/commands/grader"]
+HASHED = (
+    *("requirements.lock", "grader/setup/numpy.txt", "grader/setup/pytest.txt", "pyproject.toml"),
+    "grader/setup/commands/grader",
 )
+
+
+@pytest.mark.parametrize("changed", HASHED)
 def test_a_change_of_a_copied_file_needs_the_set_up_again(
     changed: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An editable installation copies the commands: after an update of the course, old commands would stay."""
-    for name in ("requirements.lock", "grader/setup/numpy.txt", "pyproject.toml", "grader/setup/commands/grader"):
+    for name in HASHED:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("old\n", "utf-8")
     monkeypatch.setattr(bootstrap, "ROOT", tmp_path)

@@ -1,8 +1,10 @@
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
+import sysconfig
 from importlib import metadata
 from pathlib import Path
 
@@ -83,6 +85,13 @@ def test_a_numpy_that_is_too_old_for_the_images_is_replaced_in_the_environment(
     assert "numpy==1.26.4" not in installers.uv[-1], "the wheels of ROS 2 use the numpy of the lock file"
 
 
+def test_a_sourced_ros_gets_a_pytest_that_can_load_its_plugins(installers: Installers) -> None:
+    install.install(PARTS["learner"], sourced=True)
+    install.install(PARTS["learner"], sourced=False)
+    chosen = [re.findall(r"^pytest==(\d+)", text, re.MULTILINE) for text in installers.uv]
+    assert chosen == [["8"], ["9"]]
+
+
 def test_a_numpy_that_only_the_ros_itself_can_import_is_none_of_the_graders(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(name: str) -> str:
         raise metadata.PackageNotFoundError(name)
@@ -106,7 +115,7 @@ def test_an_index_that_pip_was_configured_to_use_is_named(installers: Installers
 
 def test_without_a_network_it_is_the_machine(installers: Installers, capfd: pytest.CaptureFixture[str]) -> None:
     installers.failed["pip"] = "WARNING: Retrying: [Errno -3] Temporary failure in name resolution\nERROR: none\n"
-    with pytest.raises(MachineError, match=r"\(Temporary failure in name resolution\)\. Is it online\? A proxy"):
+    with pytest.raises(MachineError, match=r"\(Temporary failure in name resolution\)\. Is it online\? HTTPS_PROXY"):
         install.install(PARTS["learner"], sourced=False)
     assert "ERROR" not in capfd.readouterr().out
 
@@ -168,7 +177,8 @@ def test_the_path_of_the_course_is_rewritten_without_a_change_of_the_installers_
 
 @pytest.mark.usefixtures("installers")
 def test_the_tests_do_not_install_into_their_own_environment() -> None:
-    path = next(Path(folder) for folder in sys.path if folder.endswith("site-packages"))
+    # A sourced ROS 2 has a site-packages folder of its own on sys.path.
+    path = Path(sysconfig.get_path("purelib"))
     before = {file: (file.stat().st_ino, file.stat().st_mtime_ns) for file in path.glob("*.pth")}
     install.install(PARTS["learner"], sourced=False)
     assert before
