@@ -43,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
         if args.topic_name and not args.verbose:
             print("\n".join(dict.fromkeys(connection.topic for connection in reader.connections)))
         else:
-            print(_text(reader, _files(args.bag_path)))
+            print(_text(reader, _files(args.bag_path), _bytes(args.bag_path)))
     return 0
 
 
@@ -53,7 +53,13 @@ def _files(path: Path) -> list[Path]:
     return sorted(file for file in path.iterdir() if {".mcap", ".db3"} & set(file.suffixes))
 
 
-def _text(reader: Any, files: list[Path]) -> str:  # noqa: ANN401
+def _bytes(path: Path) -> int:
+    """Return the size of a file, or of all files of a bag: like rosbag2, count metadata.yaml, too."""
+    files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
+    return sum(file.stat().st_size for file in files)
+
+
+def _text(reader: Any, files: list[Path], size: int) -> str:  # noqa: ANN401
     empty = not reader.message_count
     start = 0 if empty else reader.start_time
     # The end time that rosbags reports is one nanosecond after the last message.
@@ -67,7 +73,7 @@ def _text(reader: Any, files: list[Path]) -> str:  # noqa: ANN401
         [
             "",
             f"Files:             {_lines(file.name for file in files)}",
-            f"Bag size:          {_size(sum(file.stat().st_size for file in files))}",
+            f"Bag size:          {_size(size)}",
             f"Storage id:        {storage}",
             f"ROS Distro:        {reader.ros_distro or 'unknown'}",
             f"Duration:          {_seconds(end - start)}s",

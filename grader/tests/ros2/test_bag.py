@@ -81,6 +81,9 @@ def test_all_that_arrived_before_the_end_is_in_the_bag(quiet: World, number: sig
     assert recorder.stop(number) == 0
     assert numbers(quiet.home / "bag") == list(range(500))
     reported = quiet.run("ros2 bag info bag").stdout
+    # rosbag2 counts metadata.yaml, too.
+    size = sum(file.stat().st_size for file in (quiet.home / "bag").iterdir())
+    assert f"Bag size:          {size / 1024:.1f} KiB\n" in reported
     assert "Files:             bag_0.mcap\n" in reported
     assert "ROS Distro:        jazzy\n" in reported
     assert "Messages:          500\n" in reported
