@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.ros2 [--times N]
 
-Everything is measured in one run. The measurements alternate, so that other programs slow down all of them alike. The
-first `ros2 topic list` starts the ROS 2 daemon, and the later ones use it. The benchmark also prints in how many runs
-`ros2 topic list` found all topics, and Tab all topics that begin with the typed characters.
+The measurements alternate, so that other programs slow down all of them alike. The first `ros2 topic list` starts the
+ROS 2 daemon, and the later ones use it. The benchmark also prints how often `ros2 topic list` found all topics, and Tab
+all topics that begin with the typed characters.
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ first."""
 MOST_TREE = 1024 * 1024
 """The maximum size of an install tree that is kept (bytes)."""
 _USUAL_FOLDER = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
-"""Matches the names of folders in which colcon finds a package. Other names could change the result of a build."""
+"""Matches the usual names of package folders. A package in another folder is built separately: colcon may ignore it."""
 
 
 class SharedBuilds:

@@ -84,7 +84,7 @@ def moved_targets(recording: Recording) -> list[Track]:
 def caught(recording: Recording) -> list[Track]:
     """Return the targets that were removed before the end of the scenario, in the order of their removal.
 
-    A target that the trial itself removed does not count.
+    A target that the trial withdrew before the node had caught it does not count.
     """
     until = activity.end_s(recording)
     tracks = (track for track in recording.tracks if track.turtle not in recording.withdrawn)

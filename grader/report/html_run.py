@@ -44,8 +44,8 @@ class Picture:
 class Run:
     """A trial in the form that the page's template needs.
 
-    `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if the exercise
-    requires commands but no command arrived. `amount`, `all_calls` and `all_goals` count all commands, calls
+    `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if a check of
+    this trial requires commands but no command arrived. `amount`, `all_calls` and `all_goals` count all commands, calls
     and goals. The tables show only the first of them.
     """
 

@@ -105,7 +105,7 @@ def _opened(path: Path, exactly: bool) -> Iterator[int]:
 
 
 def open_answers(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
-    """Read this folder, and keep only answers.toml, for an exercise without a package.
+    """Return a submission that contains only the answers.toml of this folder, for an exercise without a package.
 
     `exactly` has the same meaning as in `open_submission`.
 

@@ -40,10 +40,10 @@ class ForkServer:
     """
 
     def __init__(self, start: Callable[[int], subprocess.Popen[bytes]]) -> None:
-        """Create a server whose process is started with the method `start` or with the first request.
+        """Create a server. The method `start` starts its process, or else the first request does.
 
-        The function `start` starts the process. Its argument is the descriptor of the socket for requests, which the
-        process inherits.
+        The argument `start` is the function that starts the process. It gets the descriptor of the socket for requests,
+        which the process inherits.
         """
         self._start = start
         self._changing = Lock()

@@ -1,8 +1,8 @@
-"""Decide whether a request is allowed. Requests from pages of other sites are rejected.
+"""Decide whether a request is allowed.
 
-A page from another site in the same browser can also send requests to 127.0.0.1. The guard detects such requests,
-because the browser sends the site of the page (Origin) and the name that the page used for this machine (Host).
-In addition, pages of other sites do not have the token.
+A page from another site in the same browser can also send requests to 127.0.0.1. The guard rejects a request if its
+Origin (the site of the page) or its Host (the name that the page used for this machine) is another one. A connection to
+the simulator must have an Origin. In addition, pages of other sites do not have the token.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Explain crashes whose reason is the function that the entry point names: a coroutine, a class, or an early end."""
+"""Explain crashes of an entry point that names no plain function, and of a node that spins after the end of main."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.M
 
 
 def place_of(run: NodeRun, code: TestCode) -> Where | None:
-    """Return the line in the student's test files at which a test failed, or else only the file, or None."""
+    """Return the line of the first failure in the student's test files, or else only its file, or None."""
     for module in code.modules:
         if run.file.endswith(f"/{module.file}") and run.line > 0:
             return Where(module.file, run.line)

@@ -182,7 +182,7 @@ def never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
 def _is_called_by_others(evidence: Evidence, module: Module, method: ast.FunctionDef) -> bool:
     """Return whether Python (as with __call__), a base class such as Thread, or a decorator may call the method.
 
-    Code that uses getattr may call every method.
+    A module that uses getattr may call any method.
     """
     classes = [node for each in evidence.code.modules for node in each.nodes if isinstance(node, ast.ClassDef)]
     own = next(each for each in classes if method in each.body)

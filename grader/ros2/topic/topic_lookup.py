@@ -62,7 +62,7 @@ def not_published(requested: str) -> None:
 
 
 def nearest_topic(node: Node, topic: str, text: str = "") -> str:
-    """Return `text`, followed by a line that suggests the most similar topic, or says that no node was found."""
+    """Return `text`, with another line if a topic has a similar name or if no node was found."""
     known = [name for name, _ in node.get_topic_names_and_types() if name != topic]
     return did_you_mean(topic, known, text, node.get_node_names())
 
