@@ -36,7 +36,8 @@ CONTAINER = """\
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
 """The modules that the set-up does not install if a ROS 2 is sourced, and the Debian package of each module.
 
-With a sourced ROS 2, the set-up leaves out lock.SOURCED_BRINGS and the part `ros` of the lock file.
+With a sourced ROS 2, install.py leaves out lock.SOURCED_BRINGS, pytest and the part `ros` of the lock file. It installs
+another version of pytest and, if the system has no usable numpy, of numpy.
 """
 _IMPORTS = """
 import importlib, json, sys

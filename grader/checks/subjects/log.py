@@ -249,7 +249,7 @@ def _set_again(evidence: Evidence) -> Cause | None:
 
 
 def _starts(evidence: Evidence) -> Iterator[tuple[float, Where]]:
-    """Yield each number that the code assigns to a variable that it also increases, and the place of the assignment."""
+    """Yield each number that is assigned to a variable with an operator such as += elsewhere, and its place."""
     for module in evidence.code.modules:
         increased = {ast.unparse(node.target) for node in module.nodes if isinstance(node, ast.AugAssign)}
         for node in module.nodes:

@@ -115,8 +115,8 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
         )
     if params.answer == "refused" and successful:
         text = (
-            "The callback of add_on_set_parameters_callback must return SetParametersResult(successful=False, ...) "
-            "for this value, whichever parameter is set."
+            f"When {name} is set to {value}, the callback of add_on_set_parameters_callback must return "
+            "SetParametersResult(successful=False, ...). ROS 2 calls this callback for all parameters of the node."
         )
         observed = f"The node accepted {name} = {value}."
         late = evidence.code.calls("add_post_set_parameters_callback")
