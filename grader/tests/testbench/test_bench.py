@@ -28,7 +28,9 @@ def verdicts(runs: tuple[NodeRun, ...]) -> dict[str, bool]:
 def test_good_tests_accept_the_right_node_and_reject_the_others(files: dict[str, bytes]) -> None:
     runs = run(spec("stop", "type", right_runs=2), files, lanes=2)
     assert verdicts(runs) == {"": True, "stop": False, "type": False}
-    assert [(each.collected, each.passed) for each in runs if not each.node] == [(9, 9)] * 2
+    rights = [(each.collected, each.passed) for each in runs if not each.node]
+    assert len(rights) in (2, 3), "there is an additional run if a run on a broken node takes long"
+    assert set(rights) == {(9, 9)}
     assert all(each.line > 0 for each in runs if each.node)
 
 

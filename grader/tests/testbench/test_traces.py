@@ -120,7 +120,9 @@ TRACES = {
 def test_a_run_finds_no_trace_of_an_earlier_one(code: str, files: dict[str, bytes]) -> None:
     tests = f"{code}\n\ndef test_nothing_is_found():\n    assert not found\n"
     runs = run(spec("rate", "topic", right_runs=2), {**files, TESTS: tests.encode()})
-    assert [(each.exit_code, each.message) for each in runs] == [(0, "")] * 4
+    # If a run on a broken node takes long, there is an additional run on the correct node.
+    assert len(runs) in (4, 5)
+    assert {(each.exit_code, each.message) for each in runs} == {(0, "")}
 
 
 CONFINED = """
