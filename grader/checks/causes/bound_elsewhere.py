@@ -115,10 +115,9 @@ def _of_function(scene: CrashScene, binding: Binding) -> Cause:
         "other functions."
     )
     own = scene.own_class.name if scene.own_class is not None and scene.function is not None else None
-    for node in scene.nodes:
-        made = isinstance(node, ast.Assign) and binding.node in node.targets and isinstance(node.value, ast.Call)
-        if isinstance(node, ast.Assign) and made and ast.unparse(node.value).startswith(f"{own}("):
-            text += f" Inside the methods of {own}, the object is self."
+    assigned = [node.value for node in scene.nodes if isinstance(node, ast.Assign) and binding.node in node.targets]
+    if any(ast.unparse(value).startswith(f"{own}(") for value in assigned):
+        text += f" Inside the methods of {own}, the object is self."
     return Cause("local-name", text)
 
 

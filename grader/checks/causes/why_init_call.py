@@ -49,8 +49,8 @@ def why_init_call(scene: CrashScene) -> Cause | None:
 
 def _call(scene: CrashScene) -> ast.Call | None:
     """Return the call to __init__, Node or create_node on the line, or None."""
-    found = [call for name in ("__init__", "Node", "create_node") for call in scene.calls_on_line(name)]
-    return next(iter(found), None)
+    names = ("__init__", "Node", "create_node")
+    return next((call for name in names for call in scene.calls_on_line(name)), None)
 
 
 def _written(call: ast.Call) -> str:

@@ -57,6 +57,9 @@ def _callback_in_quotes(scene: CrashScene) -> Cause | None:
         given = node.args[PLACES[maker]]
         if isinstance(given, ast.Constant) and isinstance(given.value, str):
             kind = maker.removeprefix("create_")
-            text = f"The callback of a {kind} is the method itself. Write it without quotation marks, after self."
+            name = given.value.removeprefix("self.")
+            wanted = f"self.{shorten(name)}" if name.isidentifier() else "self, a dot and its name,"
+            write = f"Write {wanted} without quotation marks."
+            text = f"The callback of a {kind} is the method itself. {write}"
             return Cause("not-callable", text, scene.at(given))
     return None

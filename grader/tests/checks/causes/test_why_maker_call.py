@@ -20,7 +20,13 @@ from grader.tests.checks.crashes import DRIVER, reported
             'self.create_timer(0.5, "send")',
             "TypeError: 'str' object is not callable",
             "not-callable",
-            "The callback of a timer is the method itself. Write it without quotation marks, after self.",
+            "The callback of a timer is the method itself. Write self.send without quotation marks.",
+        ),
+        (
+            'self.create_timer(0.5, "send()")',
+            "TypeError: 'str' object is not callable",
+            "not-callable",
+            "The callback of a timer is the method itself. Write self, a dot and its name, without quotation marks.",
         ),
         (
             "rclpy.spin(self)",

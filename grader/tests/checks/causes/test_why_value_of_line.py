@@ -70,7 +70,7 @@ from grader.tests.checks.shapes import crashed
         (
             "self.create_service(SetBool, 'a', 'send')",
             "TypeError: 'str' object is not callable",
-            "The callback of a service is the method itself. Write it without quotation marks, after self.",
+            "The callback of a service is the method itself. Write self.send without quotation marks.",
         ),
         (
             "for i in 5: pass",
