@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import tarfile
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
 
     from grader.submission.package import Submission
 
-NODE = "my_robot_controller/draw_circle.py"
+PACKAGE = "my_robot_controller"
+NODE = f"{PACKAGE}/draw_circle.py"
 TEST = "test/test_node.py"
 LONG_NAME = 100
 """Formats of tar store the names that are longer than this (characters) in different ways."""
@@ -54,7 +56,8 @@ class Colcon:
     def __call__(self, package: Submission, *arguments: Any, **options: Any) -> runner.Built:  # noqa: ANN401
         self.packages.append(package)
         if self._tree is not None:
-            return runner.Built(Build(0, ""), self._tree)
+            modules = tuple(f"{SITE}/{path}" for path in package.files if path.startswith(f"{PACKAGE}/"))
+            return runner.Built(Build(0, "", PACKAGE, installed=modules), self._tree)
         return runner.build(package, *arguments, **options)
 
 
@@ -212,6 +215,14 @@ def test_nothing_is_shared_if_colcon_installs_other_files(solution: Submission, 
     for each in (solution, with_node(solution, "")):
         assert build(builds, each).tree == surprise
     assert [package.files[NODE] for package in colcon.packages] == [b"", solution.files[NODE], b""]
+
+
+def test_a_build_that_cannot_be_shared_is_not_stored(solution: Submission, surprise: bytes) -> None:
+    stored: list[tuple[object, ...]] = []
+    store: Any = SimpleNamespace(get=lambda _: None, put=lambda *entry: stored.append(entry))
+    built = SharedBuilds(Colcon(surprise), store)(solution, find_ros(), in_cell=True, tell=lambda _: None)
+    assert built.tree == surprise
+    assert stored == []
 
 
 def test_the_oldest_builds_are_forgotten(
