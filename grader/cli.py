@@ -113,6 +113,8 @@ def check(
 ) -> None:
     """Build and run one submission, and print what is right and what is wrong."""
     gc.disable()  # a check leaves hardly any garbage, and ends soon
+    from functools import partial
+
     from grader.colcon.shared_builds import build_for
     from grader.evidence import recording_format
     from grader.grading.grade import grade
@@ -121,6 +123,7 @@ def check(
     from grader.report.progress_line import progress
     from grader.report.terminal import early
     from grader.sandbox import bubblewrap
+    from grader.trial.trial import Trial
 
     for file in (json, image, html):
         check_writable(file)
@@ -129,9 +132,16 @@ def check(
     requested, opened = _opened(submission, exercise)
     in_cell = bubblewrap.require(anyway="Without --sandbox, this code runs") if confined else bubblewrap.usable()
     options = Options(in_cell, clock.value, seed, explain)
-    build = build_for(marks=confined)
     with progress() as tell:
-        graded = grade(requested, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)), build=build)
+        graded = grade(
+            requested,
+            opened,
+            options,
+            tell,
+            early=lambda failed: tell.keep_all(early(failed)),
+            build=build_for(marks=confined),
+            trial=partial(Trial, share=not confined),
+        )
         if recording:
             recording_format.save(
                 recording, graded.evidence, graded.report.ros, graded.prefixes, confined=graded.report.confined

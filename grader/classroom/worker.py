@@ -172,7 +172,7 @@ def _start_fork_servers() -> None:
     with suppress(MachineError):
         if bubblewrap.usable():
             ros = underlay.with_turtlesim(installation.find_ros())
-            fork_client.conductors(ros).start()
+            fork_client.conductors(ros, share=False).start()
             fork_client.nodes(ros).start()
 
 

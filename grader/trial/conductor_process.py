@@ -139,8 +139,10 @@ class PlainConductor(ConductorProcess):
 class ConductorInRoom(ConductorProcess):
     """A conductor that is a fork (grader.trial.fork_server) in a new room."""
 
-    def __init__(self, ros: installation.Ros, nodes: int, errors: IO[bytes]) -> None:
+    def __init__(self, ros: installation.Ros, nodes: int, errors: IO[bytes], *, share: bool) -> None:
         """Create the room, and request the conductor and the processes of `nodes` nodes from the fork servers.
+
+        `share` is the argument of fork_client.conductors.
 
         Raises:
             HolderError: bubblewrap could not create the room.
@@ -171,7 +173,7 @@ class ConductorInRoom(ConductorProcess):
                 limits = [(which, allowed(which, most)) for which, most in wanted]
                 conductor = {"groups": groups, "user": user, "limits": limits, "home": str(bubblewrap.HOME)}
                 descriptors = [room, its_stdin, its_stdout, errors.fileno(), asks.fileno()]
-                self._forks = [fork_client.conductors(ros).request(conductor, descriptors)]
+                self._forks = [fork_client.conductors(ros, share=share).request(conductor, descriptors)]
                 stack.callback(self._forks[0].close)
                 if nodes:
                     self._forks += [fork_client.nodes(ros).request(about_nodes(groups, nodes), [answers.fileno()])]

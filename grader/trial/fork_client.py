@@ -39,11 +39,11 @@ class ForkServer:
     It exits when this process and all processes that this process has forked have exited.
     """
 
-    def __init__(self, start: Callable[[int], subprocess.Popen[bytes]]) -> None:
+    def __init__(self, start: Callable[[int], subprocess.Popen[bytes] | None]) -> None:
         """Create a server. The method `start` starts its process, or else the first request does.
 
         The argument `start` is the function that starts the process. It gets the descriptor of the socket for requests,
-        which the process inherits.
+        which the process inherits. It returns None if the process is a fork of another server.
         """
         self._start = start
         self._changing = Lock()
@@ -111,10 +111,19 @@ def _started(kind: Literal["conductor", "node"], ros: installation.Ros, descript
     )
 
 
+def _forked(ros: installation.Ros, descriptor: int) -> None:
+    """Fork the server for conductors from the server for nodes."""
+    nodes(ros).request({"groups": [], "conductors": CONDUCTORS}, [descriptor]).close()
+
+
 @cache
-def conductors(ros: installation.Ros) -> ForkServer:
-    """Return the fork server for conductors that run with this ROS 2."""
-    return ForkServer(partial(_started, "conductor", ros))
+def conductors(ros: installation.Ros, *, share: bool) -> ForkServer:
+    """Return the fork server for conductors that run with this ROS 2.
+
+    With `share`, this server is a fork of the server for nodes, which saves one import of rclpy. Each node then knows
+    the memory layout of its conductor, so do not share if the result counts for marks.
+    """
+    return ForkServer(partial(_forked, ros) if share else partial(_started, "conductor", ros))
 
 
 @cache

@@ -1,8 +1,10 @@
 """Fork conductors or nodes from a process that has already imported rclpy, so that a trial need not import it.
 
 A grader has two fork servers: one forks the conductors of its trials, and the other forks the nodes
-(grader.trial.launcher). They are separate, because a conductor reads the messages of a student's node, and the node
-must not be able to find out the memory layout of the conductor. A server has no data about the trials. Before its forks
+(grader.trial.launcher). For marks, they are started separately, because a conductor reads the messages of a student's
+node, and the node must not be able to find out the memory layout of the conductor. When learners check their own work,
+the server for conductors is a fork of the server for nodes, so that rclpy is imported only once. A server has no data
+about the trials. Before its forks
 enter the sandbox, they read only the request and, for a node, file descriptors from the conductor. Student code never
 runs outside the sandbox.
 
@@ -43,7 +45,7 @@ from grader.trial.fork import STARTED
 from grader.trial.forking import fork_supervised, next_request
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 NODES_SOCKET = 3
 """The descriptor of the socket on which a conductor requests nodes."""
@@ -54,6 +56,9 @@ CELLS_USER = 1000
 _AHEAD = ("grader.trial.conductor", "grader.trial.simulated", "grader.trial.wall", "grader.trial.without_node")
 """The main modules of a conductor. They import all other modules that a conductor needs."""
 
+_CHECKED = "ros_python_check_fields"
+"""The variable in which the module of a message class keeps the environment variable with the same name in capitals."""
+
 
 def main() -> None:
     """Import everything, and serve requests until the socket is closed.
@@ -62,14 +67,17 @@ def main() -> None:
     """
     kind, requests = sys.argv[1], socket.socket(fileno=int(sys.argv[2]))
     Path("/proc/self/comm").write_text("python3", "ascii")  # otherwise, `ps` shows the name of the loader
-    gc.disable()  # imports leave hardly any garbage
-    problem, postponed = "", []
-    try:
-        postponed = launcher.import_ahead() if kind == "node" else _import_conductor()
-    except Exception:  # a part of ROS 2 is missing, for example
-        problem = traceback.format_exc()
+    postponed, problem = _try(launcher.import_ahead if kind == "node" else _import_conductor)
     entering.allow_inspection(allow=False)
     order, passed = _next_order(requests)
+    if "conductors" in order:
+        kind = "conductor"
+        _set_environment(order["conductors"])
+        if not problem:
+            _, problem = _try(_import_conductor)
+        own_requests, result = passed
+        os.close(result)
+        order, passed = _next_order(socket.socket(fileno=own_requests))
     with _exit_on_errors():
         (_enter_cell if kind == "node" else _enter_room)(order, problem, *passed)
     if kind == "node":
@@ -80,6 +88,23 @@ def main() -> None:
 
         conductor.main(socket.socket(fileno=NODES_SOCKET))
         os._exit(0)  # nobody needs what Python and Fast DDS would clean up
+
+
+def _try(import_: Callable[[], list[launcher.Postponed]]) -> tuple[list[launcher.Postponed], str]:
+    """Call a function that imports modules. Return its result and, if it fails, the traceback."""
+    gc.disable()  # imports leave hardly any garbage
+    try:
+        return import_(), ""
+    except Exception:  # a part of ROS 2 is missing, for example
+        return [], traceback.format_exc()
+
+
+def _set_environment(variables: dict[str, str]) -> None:
+    """Set environment variables, also in message classes that have already been imported and have read a variable."""
+    os.environ.update(variables)
+    for module in list(sys.modules.values()):
+        if _CHECKED in getattr(module, "__dict__", ()):
+            setattr(module, _CHECKED, variables[_CHECKED.upper()])
 
 
 @contextmanager

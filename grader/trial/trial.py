@@ -83,7 +83,9 @@ class Trial:
     Entering the context starts the simulator and the launcher, so that both are ready when the build is done.
     """
 
-    def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:
+    def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool, share: bool = False) -> None:
+        """Prepare a trial. `share` is the argument of fork_client.conductors."""
+        self._share = share
         self._plan = plan
         self._ros = ros
         self._in_cell = in_cell
@@ -210,7 +212,7 @@ class Trial:
             return PlainConductor(self._ros, self._home, self._domain, self._errors)
         nodes = 0 if self._plan.alone else 1 + len(self._plan.beside)
         try:
-            return ConductorInRoom(self._ros, nodes, self._errors)
+            return ConductorInRoom(self._ros, nodes, self._errors, share=self._share)
         except (HolderError, OSError) as error:
             raise _fault(str(error)) from error
 

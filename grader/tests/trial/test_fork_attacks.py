@@ -16,7 +16,7 @@ from grader.common.interpreter import interpreter
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.tests.observed_host import Host, readable_by_others
-from grader.tests.trial.test_fork_server import WALL, run
+from grader.tests.trial.forks import WALL, run
 from grader.trial.trial import WallTimeNeeded
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ plan = Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0)
 NOT_INSPECTED = f"""{TRIALS}{FORKS}
 with Trial(plan, ros, in_cell=True) as trial:
     trial.await_ready()
-    servers = [server._process.pid for server in (fork_client.conductors(ros), fork_client.nodes(ros))]
+    servers = [server._process.pid for server in (fork_client.conductors(ros, share=False), fork_client.nodes(ros))]
     _, conductor, forks_nodes = trial._conductor.pids()
     supervisors = [next(pid for pid in children(servers[0]) if conductor in children(pid)), *children(forks_nodes)]
     readable = [Path(f"/proc/{{pid}}/environ").stat().st_uid == os.getuid() for pid in

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import signal
 import subprocess
 import sys
-import tarfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,13 +21,12 @@ from grader.sandbox.limits import NODE_LIMITS
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import family
 from grader.sandbox.user import cell_user
+from grader.tests.trial.forks import WALL, children, forks, kill, mapped, run
 from grader.tests.waiting import HANG_S, until_gone
 from grader.trial import fork_client
-from grader.trial.recording import Pose, Recording
-from grader.trial.trial import Plan, Trial
+from grader.trial.trial import Trial
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
-WALL = Plan("wall", Pose(5.5, 5.5, 0.0), None, 0.1)
 SELF = """#!/usr/bin/env python3
 import ctypes, json, os, resource, signal, sys
 death = ctypes.c_int()
@@ -60,19 +57,9 @@ print(json.dumps({
 """
 
 
-def run(script: str, plan: Plan = WALL) -> Recording:
-    """Run the script as the node of a trial in wall time."""
-    tree = io.BytesIO()
-    with tarfile.open(fileobj=tree, mode="w") as archive:
-        member = tarfile.TarInfo("package/lib/package/node")
-        member.mode, member.size = 0o755, len(script.encode())
-        archive.addfile(member, io.BytesIO(script.encode()))
-    with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
-        return trial.run("package", "node", tree.getvalue())
-
-
-def test_a_node_cannot_do_more_than_a_program_that_bubblewrap_starts() -> None:
-    recording = run(SELF)
+@pytest.mark.parametrize("share", [False, True])
+def test_a_node_cannot_do_more_than_a_program_that_bubblewrap_starts(*, share: bool) -> None:
+    recording = run(SELF, share=share)
     assert recording.stderr.text == ""
     forked = json.loads(recording.stdout.text)
     view = bubblewrap.ros_view(with_turtlesim(find_ros()), FASTDDS_PROFILE)
@@ -103,7 +90,8 @@ def test_a_traceback_shows_the_program_alone() -> None:
     ]
 
 
-def test_nodes_do_not_share_random_numbers_and_inherit_no_module_of_the_grader() -> None:
+@pytest.mark.parametrize("share", [False, True])
+def test_nodes_do_not_share_random_numbers_and_inherit_no_module_of_the_grader(*, share: bool) -> None:
     script = """#!/usr/bin/env python3
 import random, sys
 frame = sys._getframe()
@@ -112,7 +100,7 @@ while frame is not None:
     frame = frame.f_back
 print(random.random(), [name for name in sys.modules if name.startswith("grader")], sys.argv, sys.orig_argv[1:])
 """
-    first, second = (run(script).stdout.text.split(" ", 1) for _ in range(2))
+    first, second = (run(script, share=share).stdout.text.split(" ", 1) for _ in range(2))
     assert first[0] != second[0]
     assert first[1] == second[1] == "[] ['/ws/install/package/lib/package/node'] []\n"
 
@@ -123,11 +111,6 @@ print(random.random(), [name for name in sys.modules if name.startswith("grader"
 )
 def test_the_exit_code_is_that_of_the_node(end: str, code: int) -> None:
     assert run(f"#!/usr/bin/env python3\nimport os, sys\n{end}\n").end.exit_code == code
-
-
-def mapped(pid: int) -> set[str]:
-    """Return the places at which a process has mapped the C library."""
-    return {line.split("-")[0] for line in Path(f"/proc/{pid}/maps").read_text().splitlines() if "libc.so" in line}
 
 
 def test_a_node_does_not_have_the_memory_layout_of_the_conductor() -> None:
@@ -142,8 +125,9 @@ def test_a_node_does_not_have_the_memory_layout_of_the_conductor() -> None:
     assert not layouts[0] & layouts[2]
 
 
-def test_signals_to_their_process_group_reach_no_other_trial() -> None:
-    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
+@pytest.mark.parametrize("share", [False, True])
+def test_signals_to_their_process_group_reach_no_other_trial(*, share: bool) -> None:
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True, share=share) as trial:
         trial.await_ready()
         _, conductor, forks_nodes = trial._conductor.pids()
         supervisor = children(forks_nodes)[0]
@@ -183,7 +167,7 @@ def test_a_server_keeps_nothing_of_a_trial_and_has_no_terminal() -> None:
     observed = []
     for _ in range(2):
         run("#!/usr/bin/env python3\n")
-        for server in (fork_client.conductors(ros), fork_client.nodes(ros)):
+        for server in (fork_client.conductors(ros, share=False), fork_client.nodes(ros)):
             assert server._process is not None
             pid = server._process.pid
             assert os.getsid(pid) == pid
@@ -213,30 +197,18 @@ def test_all_processes_of_a_trial_are_in_its_control_group() -> None:
             assert [pid for pid in family(*trial._conductor.pids()) if str(pid) not in inside] == []
 
 
-def forks(trial: Trial) -> tuple[int, int]:
-    """Return the process ids of the conductor and of the node of a trial that is ready."""
-    _, conductor, forks_nodes = trial._conductor.pids()
-    return conductor, children(children(forks_nodes)[0])[0]
-
-
-def children(pid: int) -> list[int]:
-    """Return the child processes of a process with one thread."""
-    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
 def test_a_server_that_was_killed_is_started_again() -> None:
     ros = with_turtlesim(find_ros())
     run("#!/usr/bin/env python3\n")
-    for server in (fork_client.conductors(ros), fork_client.nodes(ros)):
-        assert server._process is not None
-        os.kill(server._process.pid, signal.SIGKILL)
-        server._process.wait(HANG_S)
+    for server in (fork_client.conductors(ros, share=False), fork_client.nodes(ros)):
+        kill(server)
     assert run("#!/usr/bin/env python3\nprint('again')\n").stdout.text == "again\n"
 
 
-def test_a_missing_part_of_ros_is_named() -> None:
+@pytest.mark.parametrize("share", [False, True])
+def test_a_missing_part_of_ros_is_named(*, share: bool) -> None:
     ros = replace(find_ros(), underlay=None, prefixes=(), python_path=())
-    with Trial(WALL, ros, in_cell=True) as trial, pytest.raises(MachineError, match="No module named"):
+    with Trial(WALL, ros, in_cell=True, share=share) as trial, pytest.raises(MachineError, match="No module named"):
         trial.await_ready()
 
 
@@ -249,20 +221,22 @@ from grader.trial.trial import Plan, Trial
 from grader.trial.recording import Pose
 
 ros = with_turtlesim(find_ros())
-with Trial(Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0), ros, in_cell=True) as trial:
+share = sys.argv[2] == "share"
+with Trial(Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0), ros, in_cell=True, share=share) as trial:
     trial.await_ready()
-    servers = [server._process.pid for server in (fork_client.conductors(ros), fork_client.nodes(ros))]
-    print(*servers, *trial._conductor.pids(), flush=True)
+    servers = [fork_client.nodes(ros)] if share else [fork_client.conductors(ros, share=False), fork_client.nodes(ros)]
+    print(*(server._process.pid for server in servers), *trial._conductor.pids(), flush=True)
     os.kill(os.getpid(), int(sys.argv[1]))
 """
 
 
+@pytest.mark.parametrize("mode", ["share", "apart"])
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
-def test_the_servers_and_their_forks_end_with_the_grader(number: int) -> None:
-    start = interpreter("-c", SERVER, str(number), searches=True)
+def test_the_servers_and_their_forks_end_with_the_grader(number: int, mode: str) -> None:
+    start = interpreter("-c", SERVER, str(number), mode, searches=True)
     done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False, timeout=HANG_S)
     assert done.returncode == -number, done.stderr
     pids = [int(pid) for pid in done.stdout.split()]
-    assert len(pids) == 5
+    assert len(pids) == (4 if mode == "share" else 5)
     for pid in pids:
         until_gone(pid)

@@ -1,0 +1,56 @@
+"""When learners check their own work, the fork server for conductors is a fork of the one for nodes."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+
+from grader.common.interpreter import interpreter
+from grader.ros import installation
+from grader.ros.installation import find_ros
+from grader.ros.underlay import with_turtlesim
+from grader.sandbox import bubblewrap
+from grader.tests.trial.forks import WALL, children, forks, kill, mapped, run
+from grader.tests.waiting import HANG_S, until_gone
+from grader.trial import fork_client
+from grader.trial.trial import Trial
+
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+CHECKED = """
+import os
+os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
+from std_msgs.msg import String
+from grader.trial import fork_server
+fork_server._set_environment({"ROS_PYTHON_CHECK_FIELDS": "0"})
+print(String(data=5).data)
+"""
+
+
+def test_the_conductor_and_the_node_are_forks_of_one_import() -> None:
+    with Trial(WALL, with_turtlesim(find_ros()), in_cell=True, share=True) as trial:
+        trial.await_ready()
+        conductor, node = forks(trial)
+        assert mapped(conductor) == mapped(node)
+
+
+def test_nodes_check_the_values_in_messages() -> None:
+    stderr = run("#!/usr/bin/env python3\nfrom std_msgs.msg import String\nString(data=5)\n", share=True).stderr.text
+    assert "AssertionError: The 'data' field must be of type 'str'" in stderr
+
+
+def test_conductors_do_not_check_the_values_in_messages() -> None:
+    env = installation.environment(find_ros(), home=fork_client.NOBODYS_HOME, domain=None)
+    start = interpreter("-c", CHECKED, env=env)
+    done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False, timeout=HANG_S)
+    assert done.stdout == "5\n", done.stderr
+
+
+def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_started_again() -> None:
+    for _ in range(2):
+        assert run("#!/usr/bin/env python3\nprint('again')\n", share=True).stdout.text == "again\n"
+        server = fork_client.nodes(with_turtlesim(find_ros()))
+        assert server._process is not None
+        (forked,) = children(server._process.pid)
+        kill(server)
+        until_gone(forked)
