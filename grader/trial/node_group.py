@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 from grader.trial.rest import GoneError, Look, Threads
@@ -13,11 +15,17 @@ if TYPE_CHECKING:
     from grader.trial.rest import Wait
 
 
+SETTLES_S = 1.0
+"""The maximum time that a node gets to handle the departure of another node before it is stopped (s)."""
+
+
 class NodeGroup:
     """The nodes of a trial: first the trial's own node, then the additional nodes."""
 
     def __init__(self, processes: Sequence[NodeProcess]) -> None:
         self.processes = tuple(processes)
+        self._interrupted: set[int] = set()
+        self._waiting_since_s: dict[int, float] = {}
 
     @property
     def pids(self) -> tuple[int, ...]:
@@ -46,19 +54,29 @@ class NodeGroup:
         """Return whether the trial's own node exited before it received SIGINT. Call this after the node has exited."""
         return self.processes[0].ended_itself
 
-    def interrupt(self) -> None:
-        """Send SIGINT to each node, as Ctrl-C does in a terminal."""
-        for process in self.processes:
-            process.interrupt()
+    def stop(self) -> None:
+        """Stop the nodes with Ctrl-C, one after the other. Call this method repeatedly until all have exited.
 
-    def escalate(self) -> None:
-        """Send SIGTERM or SIGKILL to processes that do not exit in time.
-
-        Call this method repeatedly after `interrupt`.
+        If a node destroys its participant while it handles the departure of another participant, it never exits, with
+        Fast DDS 2.14: DomainParticipant::set_listener, which rmw_fastrtps calls without a time limit, then waits in a
+        loop and holds the lock that the other thread needs, because its deadline overflows. This happened to 1 of 230
+        nodes that were stopped at the same time.
         """
-        for process in self.processes:
-            if not process.ended():
+        running = [process for process in self.processes if not process.ended()]
+        for process in running[:1]:
+            if process.pid in self._interrupted:
                 process.escalate()
+            elif len(running) == len(self.processes) or self._has_settled(process.pid):
+                self._interrupted.add(process.pid)
+                process.interrupt()
+
+    def _has_settled(self, pid: int) -> bool:
+        """Return whether a process has handled the departure of the other nodes: all of its threads sleep.
+
+        SETTLES_S after the first call, return True in any case.
+        """
+        first_s = self._waiting_since_s.setdefault(pid, time.monotonic())
+        return _sleeps(pid) or time.monotonic() > first_s + SETTLES_S
 
     def read_output(self, now_s: float) -> int:
         """Read and store the new output with the arrival time `now_s`, and return the number of bytes."""
@@ -75,6 +93,16 @@ class NodeGroup:
     def started_ready_s(self) -> float:
         """Return the total time (s) for which the processes started by the nodes ran or waited for a processor."""
         return sum(process.started_ready_s() for process in self.processes)
+
+
+def _sleeps(pid: int) -> bool:
+    """Return whether no thread of a process has run between two observations, or whether the process has exited."""
+    try:
+        with closing(Threads(pid)) as threads:
+            first, second = threads.look(), threads.look()
+    except GoneError:
+        return True
+    return first.asleep and first == second
 
 
 class GroupThreads:

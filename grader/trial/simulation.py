@@ -261,17 +261,16 @@ class Simulation:
             self.interventions_dropped += 1
 
     def wind_down(self) -> None:
-        """Send SIGINT to the nodes, and run frames in wall time until the nodes have exited."""
-        self.node.interrupt()
+        """Stop the nodes, and run frames in wall time until they have exited."""
         begun, from_s = time.monotonic(), self.now()
         frames = 0
         while not self.node.all_ended():
+            self.node.stop()
             if time.monotonic() - begun >= frames * FRAME_S:
                 self.tick(from_s + frames * FRAME_S)
                 frames += 1
             self.spin(0.004)
             self.node.read_output(self.now())
-            self.node.escalate()
         self.spin()
         self.node.read_output(self.now())
         if self.node.ended_itself():

@@ -23,6 +23,8 @@ from grader.trial.trial import Plan, Trial
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from grader.trial.recording import ClockName
+
 PACKAGE = "my_package"
 START = Pose(5.544445, 5.544445, 0.0)
 NODE = """#!/usr/bin/env python3
@@ -62,6 +64,21 @@ def drive():
     rclpy.shutdown()
     exit(0)
 node.create_timer(0.5, drive)
+"""
+STOPS = """
+import atexit, time
+def stop():
+    print(time.monotonic())
+    time.sleep(0.2)
+    print(time.monotonic())
+atexit.register(stop)
+"""
+TURNS = """
+import threading
+def turn():
+    while True:
+        pass
+node.create_timer(0.8, lambda: threading.Thread(target=turn, daemon=True).start())
 """
 LEAVES_A_CHILD = """
 import subprocess
@@ -113,7 +130,9 @@ timer = node.create_timer(1.5, lambda: (node.destroy_service(server), timer.canc
 """
 
 
-def trial_of(inputs: Inputs, duration_s: float = 4.0, *, in_cell: bool = True, **bodies: str) -> Recording:
+def trial_of(
+    inputs: Inputs, duration_s: float = 4.0, *, clock: ClockName = "simulated", in_cell: bool = True, **bodies: str
+) -> Recording:
     """Return the recording of one trial in which a node with each of these bodies runs."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w|") as tar:
@@ -123,7 +142,7 @@ def trial_of(inputs: Inputs, duration_s: float = 4.0, *, in_cell: bool = True, *
             member.size, member.mode = len(source), 0o755
             tar.addfile(member, io.BytesIO(source))
     first, *others = bodies
-    plan = Plan("simulated", START, None, duration_s, inputs=inputs, beside=tuple(others))
+    plan = Plan(clock, START, None, duration_s, inputs=inputs, beside=tuple(others))
     with Trial(plan, with_turtlesim(find_ros()), in_cell=in_cell) as trial:
         return trial.run(PACKAGE, first, stream.getvalue())
 
@@ -151,6 +170,20 @@ def test_each_node_keeps_its_own_output_and_stops_on_ctrl_c(both: Recording) -> 
     assert [each.end.by for each in (both, beside)] == ["SIGINT", "SIGINT"]
     assert {"/ping", "/pong"} <= set(both.graphs[-1].nodes)
     assert from_json(to_json(both)).beside == both.beside
+
+
+def test_the_nodes_are_stopped_one_after_the_other() -> None:
+    recording = trial_of(Inputs(), 1.0, first=STOPS, second=STOPS, third=STOPS)
+    stops = [recording.seen_from(name).stdout.text.split()[-2:] for name in ("second", "third")]
+    stops.insert(0, recording.stdout.text.split()[-2:])
+    times_s = [float(each) for stop in stops for each in stop]
+    assert times_s == sorted(times_s), "a node was stopped before another one had exited"
+    assert [end.by for end in (recording.end, *(each.end for each in recording.beside))] == ["SIGINT"] * 3
+
+
+def test_a_node_that_is_never_at_rest_is_stopped_too() -> None:
+    recording = trial_of(Inputs(), 1.0, clock="wall", first=PING, second=TURNS)
+    assert recording.seen_from("second").end.by == "SIGINT"
 
 
 def test_the_trials_own_calls_are_no_calls_between_the_nodes() -> None:

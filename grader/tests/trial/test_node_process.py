@@ -89,20 +89,19 @@ def test_waiting_for_a_processor_after_ctrl_c_does_not_count(
     assert (end.stop_s < 0.2) == (by == "SIGINT")
 
 
-def test_a_quick_node_is_not_blamed_for_a_slow_node_that_stops_at_the_same_time() -> None:
+def test_a_quick_node_is_not_blamed_for_a_slow_node_in_the_same_trial() -> None:
     limits = Limits(processes=50, cpu_s=60)
     with (
         NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as quick,
         NodeProcess(LauncherProcess(["sh", "-c", SLOW]), limits) as slow,
     ):
-        group = NodeGroup([quick, slow])
+        group = NodeGroup([slow, quick])
         group.await_ready()
         group.start([{}, {}], b"")
         until(lambda: quick.read_output(0.0) > 0)
         until(lambda: slow.read_output(0.0) > 0)
-        group.interrupt()
         while not group.all_ended():
-            group.escalate()
+            group.stop()
             time.sleep(0.01)
         took_s = quick.end(0.0).stop_s, slow.end(0.0).stop_s
     assert took_s[0] is not None
