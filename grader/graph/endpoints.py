@@ -33,9 +33,12 @@ def observe(node: Node) -> Observed:
     """Return the part of the graph that `node` has already discovered.
 
     To get the whole graph, call `discovery.settle` first.
+
+    A node without any publisher or subscription is left out. Each node publishes at least /parameter_events. However,
+    on a busy machine, rmw_dds_common can handle the last list of a participant's nodes after the end of the participant
+    (GraphCache::update_participant_entities adds an unknown participant). Such a node would never leave the graph.
     """
     own = node.get_fully_qualified_name()
-    names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
     ends = []
     for topic, _ in node.get_topic_names_and_types():
         for kind, infos in (
@@ -43,8 +46,10 @@ def observe(node: Node) -> Observed:
             ("subscription", node.get_subscriptions_info_by_topic(topic)),
         ):
             ends += [End(kind, _full(i.node_name, i.node_namespace), topic, printable(i.topic_type)) for i in infos]
+    known = {end.node for end in ends} - {own}
+    names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
     return Observed(
-        tuple(sorted(name for name in names if name != own)),
+        tuple(sorted(name for name in names if name in known)),
         tuple(sorted((end for end in ends if end.node != own), key=lambda end: (end.topic, end.kind, end.node))),
     )
 

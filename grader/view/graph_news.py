@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
+import time
 from typing import TYPE_CHECKING, Any
 
+from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.graph.graph import picture
 from grader.view.page_graph import NOTHING, laid_out
@@ -18,6 +21,10 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 
+RETRY_S = 5.0
+"""If Graphviz could not draw a graph, it tries again after this time (s)."""
+
+
 class GraphNews:
     """Sends the graph to all pages whenever the graph has changed. `state` has the rates that the simulator reports."""
 
@@ -28,6 +35,7 @@ class GraphNews:
         self._system: System | None = None
         self._graph: dict[str, Any] = {"wide": NOTHING, "narrow": NOTHING}
         self._drawn: object = None
+        self._retry_s = math.inf
         self._drawing: asyncio.Task[None] | None = None
 
     def look(self, system: System) -> None:
@@ -46,14 +54,17 @@ class GraphNews:
 
     async def _draw(self, system: System) -> None:
         drawn = picture(system.observed.nodes, system.observed.ends, self._show)
-        if drawn == self._drawn:
+        if drawn == self._drawn and time.monotonic() < self._retry_s:
             return
         try:
-            self._graph = await asyncio.to_thread(laid_out, drawn)
-        except GraderError as error:
-            self._graph = {**self._graph, "problem": str(error)}
-        self._drawn = drawn
-        self._hub.tell("graph", {"graph": self._graph})
+            graph, retry_s = await asyncio.to_thread(laid_out, drawn), math.inf
+        except (GraderError, OSError, RuntimeError) as error:  # a process or a thread may be refused
+            problem = refusal(error) or str(error)
+            graph, retry_s = {**self._graph, "problem": problem}, time.monotonic() + RETRY_S
+        self._drawn, self._retry_s = drawn, retry_s
+        if graph != self._graph:
+            self._graph = graph
+            self._hub.tell("graph", {"graph": graph})
 
     def _topics(self) -> list[dict[str, object]]:
         return rows(self._system, self._state, self._show) if self._system else []

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Browser, Page
 
+SHOWN = "all => all.map(each => Object.values(each.dataset).join(' -> '))"
+
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
@@ -43,4 +45,7 @@ def page(browser: Browser, system: World) -> Iterator[Page]:
     tab.get_by_role("button", name="Reset").click()
     tab.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()
     yield tab
+    # pytest shows this if the test has failed.
+    print("The programs wrote:", *(line for each in system.running for line in each.lines), sep="\n")
+    print("The graph of the page:", tab.locator(".node, .arrow").evaluate_all(SHOWN), sep="\n")
     tab.close()
