@@ -14,6 +14,7 @@ from rclpy.serialization import deserialize_message
 from grader.trial.interface_class import load_class
 from grader.trial.observed import Offer
 from grader.trial.recording import Command, Endpoint, Graph, LogLine, Message
+from grader.trial.repeats import REPORTED_TYPES, Repeats
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -50,7 +51,8 @@ class Recorder(Node):
     """A hidden node that subscribes to the topics in the graph, up to a limit.
 
     The recorder never subscribes to the commands for turtle1, because the simulator itself reports them. The recorder
-    subscribes to the simulator's own topics for turtle1 and to /clock only if other nodes publish on them, too.
+    subscribes to the simulator's own topics for turtle1 and to /clock only if other nodes publish on them, too. A
+    message that both the simulator and the recorder report is stored once.
     """
 
     def __init__(
@@ -85,6 +87,7 @@ class Recorder(Node):
         self._prefixes = prefixes
         self._simulated = simulated
         self._known: set[tuple[str, str]] = set()
+        self._repeats = Repeats()
         self._kept: Counter[str] = Counter()
         self._bytes: Counter[str] = Counter()
         """The number and the total size (bytes) of the messages, with the same keys as `_subscribed`."""
@@ -92,17 +95,23 @@ class Recorder(Node):
         self._participant = self._own_participant()
         self._endpoints_before: dict[tuple[str, str], tuple[object, set[Endpoint]]] = {}
 
-    def keep(self, topic: str, type_name: str, data: bytes) -> bool:
-        """Store a message that has just arrived. Return False if the recording is full.
+    def keep(self, topic: str, type_name: str, data: bytes, *, by_simulator: bool = True) -> bool:
+        """Store a message that the simulator or the recorder has just received, or that the simulator has sent.
 
-        Messages on other topics must not displace those on a judged topic.
+        Return False if the recording is full, or if the other of the two has already reported the message. Messages on
+        other topics must not displace those on a judged topic.
         """
+        doubled = type_name in REPORTED_TYPES and (topic, type_name) in self._known
+        if doubled and self._repeats.is_repeat(topic, data, by_simulator=by_simulator):
+            return False
         group, most_bytes = (topic, MOST_JUDGED_BYTES) if topic in self._judged else ("", MOST_BYTES)
         if self._kept[group] >= MOST_MESSAGES or self._bytes[group] + len(data) > most_bytes:
             self.dropped += 1
             return False
         self._kept[group] += 1
         self._bytes[group] += len(data)
+        if doubled:
+            self._repeats.add(topic, data, by_simulator=by_simulator)
         self.messages.append(Message(topic, type_name, data, self.now(), time.monotonic()))
         return True
 
@@ -251,7 +260,8 @@ class Recorder(Node):
         offers = self.get_publishers_info_by_topic(topic)
 
         def keep(data: bytes) -> None:
-            if self.keep(topic, type_name, data) and type_name == "rcl_interfaces/msg/Log" and topic == "/rosout":
+            kept = self.keep(topic, type_name, data, by_simulator=False)
+            if kept and type_name == "rcl_interfaces/msg/Log" and topic == "/rosout":
                 line = deserialize_message(data, message_type)
                 level = _LEVELS.get(line.level, str(line.level))
                 self.log.append(LogLine(self.now(), level, line.name, line.msg))
