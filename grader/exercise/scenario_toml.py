@@ -11,8 +11,11 @@ from grader.common.words import shorten
 from grader.exercise.calls_toml import read_calls
 from grader.exercise.model import CallInput, Drive, Scenario, StartLimits, TrialSpec
 from grader.exercise.tests_toml import read_tests
+from grader.turtlesim.services import SERVICES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from grader.exercise.tables import Table
 
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
@@ -21,6 +24,8 @@ NAME = "letters, digits and _, beginning with a letter"
 REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 SERVICE = re.compile(r"(/\w+)+")
 SERVICE_TYPE = re.compile(r"[a-z][a-z0-9_]*/srv/[A-Z][A-Za-z0-9]*")
+CATCH = "/catch"
+"""The service of the node that announces the targets (grader/trial/target_keeper.py)."""
 PARAMETER_TYPES = (
     (bool, 1, "bool_value"),
     (int, 2, "integer_value"),
@@ -105,24 +110,27 @@ def _tests(table: Table, id_: str) -> TrialSpec:
 
 
 def _scenario(table: Table, node: str) -> Scenario:
+    rename = table.strings("rename")
+    targets = table.whole("targets", 0, MOST_TARGETS, default=0)
+    own = _own_services(rename, targets)
     start = table.string("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
     scenario = Scenario(
         duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
         drives=tuple(_drive(each) for each in table.tables("drive")),
         anywhere=start == "anywhere",
         start_limits=_start_limits(table.table("start_pose")) if "start_pose" in table.values else None,
-        rename=table.strings("rename"),
+        rename=rename,
         pose_every=table.whole("pose_every", 1, 1000, default=1),
         pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
         answers_after_s=table.number("answers_after_s", 0.0, 10.0, "from 0 to 10 (s)", default=0.0),
-        calls=tuple(_call(each) for each in table.tables("call"))
+        calls=tuple(_call(each, own) for each in table.tables("call"))
         + tuple(_set(each, node) for each in table.tables("set")),
         parameters=table.settings("parameters"),
         params_file=table.settings("params_file"),
         alone_s=table.number("alone_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)")
         if "alone_s" in table.values
         else None,
-        targets=table.whole("targets", 0, MOST_TARGETS, default=0),
+        targets=targets,
         withdraws=table.flag("withdraws"),
         catch_from_s=table.number(
             "catch_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0
@@ -153,13 +161,23 @@ def _drive(table: Table) -> Drive:
     return drive
 
 
-def _call(table: Table) -> CallInput:
+def _own_services(rename: tuple[str, ...], targets: int) -> dict[str, str]:
+    """Return the services of the grader's own nodes. Each name is mapped to a phrase for the node that offers it."""
+    renamed = dict(rule.split(":=", 1) for rule in reversed(rename) if REMAP.fullmatch(rule))
+    services = {renamed.get(name, name): "the simulator" for name in SERVICES}
+    return {**services, CATCH: "the node that announces the targets"} if targets else services
+
+
+def _call(table: Table, own: Mapping[str, str]) -> CallInput:
     call = CallInput(
         table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
         table.string("service", SERVICE, "a full name, such as /pause"),
         table.string("type", SERVICE_TYPE, "a service type, such as std_srvs/srv/SetBool"),
         table.anything("request"),
     )
+    if call.service in own:
+        whose = own[call.service]
+        table.problem(f'"service" is "{call.service}", a service of {whose}; it must be a service of the node.')
     table.finish()
     return call
 

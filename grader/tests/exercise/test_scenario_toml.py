@@ -102,3 +102,23 @@ def test_a_trial_may_limit_its_start_pose_and_withdraw_a_target() -> None:
 )
 def test_a_wrong_key_is_named(more: dict[str, Any], key: str) -> None:
     assert any(f'"{key}"' in problem for problem in read(**more)[1])
+
+
+@pytest.mark.parametrize(
+    ("service", "more", "whose"),
+    [
+        ("/spawn", {}, "the simulator"),
+        ("/turtle1/set_pen", {}, "the simulator"),
+        ("/turtlesim/set_parameters", {}, "the simulator"),
+        ("/where", {"rename": ["/spawn:=/where"]}, "the simulator"),
+        ("/catch", {"targets": 1}, "the node that announces the targets"),
+        ("/spawn", {"rename": ["/spawn:=/where"]}, None),
+        ("/catch", {}, None),
+        ("/draw/set_parameters", {}, None),
+        ("/turtle1/pause", {}, None),
+    ],
+)
+def test_a_trial_calls_only_services_of_the_node(service: str, more: dict[str, Any], whose: str | None) -> None:
+    problems = read(call=[{**CALL, "service": service}], **more)[1]
+    told = f'"service" is "{service}", a service of {whose}; it must be a service of the node.'
+    assert [problem.partition(": ")[2] for problem in problems] == ([] if whose is None else [told])

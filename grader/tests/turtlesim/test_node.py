@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PIL import Image
 
+from grader.turtlesim.services import SERVICES
 from grader.turtlesim.turtle import FRAME_S, SIDE_M
 
 if TYPE_CHECKING:
@@ -49,6 +50,10 @@ def test_the_node_has_what_the_real_one_has(graph: dict[str, list[str]], section
         elif line.strip():
             entries.append(line.strip())
     assert graph[section] == sorted(recorded[section])
+
+
+def test_the_services_of_the_node_are_known_without_rclpy(graph: dict[str, list[str]]) -> None:
+    assert sorted(SERVICES) == [entry.partition(":")[0] for entry in graph["Service Servers"]]
 
 
 def test_topics_are_reliable_and_volatile_and_keep_seven(graph: dict[str, Any]) -> None:
