@@ -8,6 +8,7 @@ import os
 import select
 import socket
 import subprocess
+from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
 from threading import Lock
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 CONDUCTORS = {"ROS_PYTHON_CHECK_FIELDS": "0"}
 """Environment variables only for conductors. They disable the check of the values in messages. This check helps
 beginners, but it would slow down the simulator in every frame."""
-
 
 NOBODYS_HOME = Path("/nonexistent")
 """The HOME of a server: a folder that only root can create. rclpy loads LTTng, which follows the instructions of any
@@ -58,11 +58,14 @@ class ForkServer:
             self._running()
 
     def request(self, order: Mapping[str, Any], descriptors: Sequence[int]) -> Fork:
-        """Request a fork. The server gets `order` and these file descriptors. Any thread may call this method."""
+        """Request a fork. The server gets `order` and these file descriptors. Any thread may call this method.
+
+        If the server ends before it has received the request, the fork counts as killed.
+        """
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             passed = [*descriptors, theirs.fileno()]
-            with self._changing:
+            with self._changing, suppress(BrokenPipeError, ConnectionResetError):
                 entering.pass_descriptors(self._running(), json.dumps(order).encode(), passed)
         return Fork(ours)
 

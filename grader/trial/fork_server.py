@@ -4,9 +4,8 @@ A grader has two fork servers: one forks the conductors of its trials, and the o
 (grader.trial.launcher). For marks, they are started separately, because a conductor reads the messages of a student's
 node, and the node must not be able to find out the memory layout of the conductor. When learners check their own work,
 the server for conductors is a fork of the server for nodes, so that rclpy is imported only once. A server has no data
-about the trials. Before its forks
-enter the sandbox, they read only the request and, for a node, file descriptors from the conductor. Student code never
-runs outside the sandbox.
+about the trials. Before its forks enter the sandbox, they read only the request and, for a node, file descriptors from
+the conductor. Student code never runs outside the sandbox.
 
 The server runs outside the sandbox. It reads requests from the grader on a socket, each with file descriptors:
 
@@ -16,7 +15,9 @@ The server runs outside the sandbox. It reads requests from the grader on a sock
 - **node**: JSON with the control groups, the limits, the system call filter, the workspace and the number of nodes. The
   file descriptors are the socket on which the conductor requests nodes, and the socket for the result. For each node,
   the conductor sends only file descriptors: a process in the node's cell, standard input, output and error, and the
-  socket for the result. The conductor sends them before it starts any node.
+  socket for the result. The conductor sends them before it starts any node;
+- **conductors**, only to the server for nodes: JSON with the environment variables of conductors. The file descriptors
+  are the socket on which the fork, the server for conductors, reads its requests, and a socket that is not used.
 
 Each conductor and each node has its own socket for the result. On this socket, the server sends STARTED with a file
 descriptor of the new process, and STATUS when the process has ended. If the other end of the socket is closed, the

@@ -24,6 +24,7 @@ class NodeGroup:
 
     def __init__(self, processes: Sequence[NodeProcess]) -> None:
         self.processes = tuple(processes)
+        self._stopping = False
         self._interrupted: set[int] = set()
         self._waiting_since_s: dict[int, float] = {}
 
@@ -51,7 +52,7 @@ class NodeGroup:
         return all(process.ended() for process in self.processes)
 
     def ended_itself(self) -> bool:
-        """Return whether the trial's own node exited before it received SIGINT. Call this after the node has exited."""
+        """Return whether the trial's own node exited before `stop`. Call this after the node has exited."""
         return self.processes[0].ended_itself
 
     def stop(self) -> None:
@@ -62,6 +63,10 @@ class NodeGroup:
         loop and holds the lock that the other thread needs, because its deadline overflows. This happened to 1 of 230
         nodes that were stopped at the same time.
         """
+        if not self._stopping:
+            self._stopping = True
+            for process in self.processes:
+                process.scenario_is_over()
         running = [process for process in self.processes if not process.ended()]
         for process in running[:1]:
             if process.pid in self._interrupted:
@@ -96,12 +101,17 @@ class NodeGroup:
 
 
 def _sleeps(pid: int) -> bool:
-    """Return whether no thread of a process has run between two observations, or whether the process has exited."""
+    """Return whether no thread of a process has run between two observations, or whether the process has exited.
+
+    If the process has more threads than this process can observe, return False.
+    """
     try:
         with closing(Threads(pid)) as threads:
             first, second = threads.look(), threads.look()
     except GoneError:
         return True
+    except OSError:  # too many open files
+        return False
     return first.asleep and first == second
 
 

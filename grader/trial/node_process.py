@@ -165,19 +165,27 @@ class NodeProcess:
 
     @property
     def ended_itself(self) -> bool:
-        """True until `interrupt` sends SIGINT, even if the node is killed because it exceeds a limit."""
+        """True until the scenario is over, even if the node is killed because it exceeds a limit."""
         return self._by == "itself"
 
-    def interrupt(self) -> None:
-        """Send SIGINT, as Ctrl-C does in a terminal."""
+    def scenario_is_over(self) -> None:
+        """Let a later exit count as caused by the end of the scenario, even if it comes before SIGINT.
+
+        For example, a node may exit because another node, which was stopped first, no longer answers.
+        """
         if self._is_gone():
             # The node has just exited on its own, and its exit code is about to be reported.
             with suppress(subprocess.TimeoutExpired):
                 self._launcher.wait(STOP_S)
         if not self.ended():
+            self._by = "SIGINT"
+
+    def interrupt(self) -> None:
+        """Send SIGINT, as Ctrl-C does in a terminal."""
+        self.scenario_is_over()
+        if not self.ended():
             self._interrupted = time.monotonic()
             self._waited_before_s = self._waited_s()
-            self._by = "SIGINT"
             self._signal(signal.SIGINT)
 
     def escalate(self) -> None:
@@ -202,10 +210,10 @@ class NodeProcess:
     def _stopping_s(self) -> float | None:
         """Return the time since SIGINT (s), minus the time for which the node waited for a processor.
 
-        Return None if the grader has not sent SIGINT.
+        Before SIGINT, return None or, if the scenario is over, 0.
         """
         if self._interrupted is None:
-            return None
+            return None if self.ended_itself else 0.0
         passed_s = time.monotonic() - self._interrupted
         waited_s = self._waited_s() - self._waited_before_s
         return max(0.0, passed_s - min(waited_s, MOST_WAITED_S))

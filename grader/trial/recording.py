@@ -136,8 +136,9 @@ class ProcessEnd:
     `by` is the last signal that the grader sent to end the scenario. `out_of` is set if the grader or the kernel
     stopped the process because it used more "memory", "processes" or "files" than a node may use. `stop_s` is the time
     from SIGINT to the exit of the process (s of wall time, without the time for which it waited for a processor), or
-    None if `by` is "itself". `t_s` is the time of SIGINT or, if `by` is "itself", the time of the exit (s on the
-    trial's clock). `exit_code` is negative for a signal, as in subprocess.
+    None if `by` is "itself". If the process exited while another node was being stopped, `by` is "SIGINT" and `stop_s`
+    is 0. `t_s` is the time of SIGINT or, if `by` is "itself", the time of the exit (s on the trial's clock).
+    `exit_code` is negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]

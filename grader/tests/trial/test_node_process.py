@@ -1,9 +1,11 @@
 from __future__ import annotations
 
+import errno
 import fcntl
 import os
 import time
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,13 +13,14 @@ import pytest
 from grader.sandbox.limits import Limits
 from grader.sandbox.usage import Guard
 from grader.tests.waiting import until
-from grader.trial import node_process
+from grader.trial import node_group, node_process
 from grader.trial.launchers import LauncherProcess, LaunchError
 from grader.trial.node_group import NodeGroup
 from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
 SLOW = r"""printf '\0ready\n'; read order; trap 'sleep 1; exit 0' INT; echo waits; while :; do sleep 0.05; done"""
@@ -95,18 +98,54 @@ def test_a_quick_node_is_not_blamed_for_a_slow_node_in_the_same_trial() -> None:
         NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as quick,
         NodeProcess(LauncherProcess(["sh", "-c", SLOW]), limits) as slow,
     ):
-        group = NodeGroup([slow, quick])
-        group.await_ready()
-        group.start([{}, {}], b"")
-        until(lambda: quick.read_output(0.0) > 0)
-        until(lambda: slow.read_output(0.0) > 0)
-        while not group.all_ended():
-            group.stop()
-            time.sleep(0.01)
+        _run_and_stop(NodeGroup([slow, quick]))
         took_s = quick.end(0.0).stop_s, slow.end(0.0).stop_s
     assert took_s[0] is not None
     assert took_s[1] is not None
     assert took_s[0] < 0.8 < took_s[1]
+
+
+def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_its_own(tmp_path: Path) -> None:
+    stopping = tmp_path / "stopping"
+    slow_one = SLOW.replace("sleep 1;", f"touch {stopping}; sleep 1;")
+    follower = rf"printf '\0ready\n'; read order; echo waits; until [ -e {stopping} ]; do sleep 0.01; done; exit 3"
+    limits = Limits(processes=50, cpu_s=60)
+    with (
+        NodeProcess(LauncherProcess(["sh", "-c", slow_one]), limits) as slow,
+        NodeProcess(LauncherProcess(["sh", "-c", follower]), limits) as follows,
+    ):
+        _run_and_stop(NodeGroup([slow, follows]))
+        end = follows.end(0.0)
+    assert (end.by, end.exit_code, end.stop_s) == ("SIGINT", 3, 0.0)
+
+
+def test_a_node_with_too_many_threads_to_observe_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuses(_: int) -> None:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    monkeypatch.setattr(node_group, "Threads", refuses)
+    limits = Limits(processes=50, cpu_s=60)
+    with (
+        NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as first,
+        NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as second,
+    ):
+        _run_and_stop(NodeGroup([first, second]))
+        assert [each.end(0.0).by for each in (first, second)] == ["SIGINT", "SIGINT"]
+
+
+def _run_and_stop(group: NodeGroup) -> None:
+    """Start the nodes, wait until each of them has written something, and stop them."""
+    group.await_ready()
+    group.start([{} for _ in group.processes], b"")
+    for process in group.processes:
+        until(partial(_has_written, process))
+    while not group.all_ended():
+        group.stop()
+        time.sleep(0.01)
+
+
+def _has_written(process: NodeProcess) -> bool:
+    return process.read_output(0.0) > 0
 
 
 def test_the_error_of_a_launcher_that_exits_silently_is_not_empty() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 
 import pytest
@@ -54,3 +55,9 @@ def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_starte
         (forked,) = children(server._process.pid)
         kill(server)
         until_gone(forked)
+
+
+def test_a_fork_counts_as_killed_if_the_server_ends_before_the_request() -> None:
+    """The server for nodes closes the socket if it cannot fork the server for conductors: too many processes."""
+    ended = fork_client.ForkServer(lambda _: None)
+    assert ended.request({}, []).wait(HANG_S) == -signal.SIGKILL
