@@ -26,6 +26,7 @@ from grader.checks.causes.why_passed import why_passed
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_rclpy_refused import why_rclpy_refused
 from grader.checks.causes.why_response import why_response
+from grader.checks.causes.why_segmentation_fault import why_segmentation_fault
 from grader.checks.causes.why_transition import why_no_transition
 from grader.checks.causes.why_unbound import why_unbound
 from grader.checks.causes.why_wrong_object import why_wrong_object
@@ -191,6 +192,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
     "RuntimeError": lambda scene: _why_resized(scene) or _why_no_loop(scene) or why_refused(scene),
     "SIGABRT": lambda scene: spins_in_a_thread(scene.evidence),  # ROS 2 may abort if the main thread ends first
+    "SIGSEGV": why_segmentation_fault,
     "SyntaxError": _why_await,
     "TypeError": lambda scene: why_none(scene) or why_type(scene),
     "UnboundLocalError": why_unbound,

@@ -12,6 +12,7 @@ from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_silent import methods_of
 from grader.checks.causes.why_wrong_object import SENDERS
 from grader.common.words import shorten
+from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def why_response(scene: CrashScene) -> Cause | None:
         if not returns:
             text = f"{method.name} returns nothing. The callback of a service must return its response."
             return Cause("response-not-returned", text, where)
-        if wrong := _returned_instead(method):
+        if wrong := _returned_instead(method) or _class_returned(method):
             text = f"{method.name} returns {wrong}. The callback of a service must return its response."
             return Cause("response-not-returned", text, where)
     return None
@@ -78,3 +79,12 @@ def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
         if type(value) in DISPLAYS:
             return DISPLAYS[type(value)]
     return next((repr(value.value) for value in returned if isinstance(value, ast.Constant)), "")
+
+
+def _class_returned(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Return a phrase for the class of the response if each return statement returns it, else an empty string."""
+    returned = [node.value for node in ast.walk(method) if isinstance(node, ast.Return)]
+    names = {dotted(value) or "" if value is not None else "" for value in returned}
+    name = names.pop() if len(names) == 1 else ""
+    is_class = name[:1].isupper() and name.endswith(".Response") and isinstance(method.body[-1], ast.Return)
+    return f"the class {shorten(name)} instead of an object" if is_class else ""
