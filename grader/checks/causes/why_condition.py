@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 ROOTS = frozenset({"sqrt", "hypot", "dist", "norm"})
-HALF = 0.5
+HALF, SQUARE = 0.5, 2.0
 SIGNS: dict[object, str] = {ast.Gt: ">", ast.GtE: ">="}
 
 
@@ -78,11 +78,13 @@ def why_from_afar(evidence: Evidence, reach_m: float) -> Cause | None:
     squares_are_used = _uses_squares(evidence, reach_m)
     for module, method in methods_of(evidence):
         read = {node.attr for node in ast.walk(method) if isinstance(node, ast.Attribute)}
-        if method.name == "distance" and "x" in read and "y" not in read:
+        calls = (node.func for node in ast.walk(method) if isinstance(node, ast.Call))
+        helped = any((dotted(each) or "").startswith("self.") for each in calls)
+        if method.name == "distance" and "x" in read and "y" not in read and not helped:
             text = "The method distance uses x, but not y."
             return Cause("from-afar", text, Where(module.file, method.lineno))
         for node in ast.walk(method):
-            value = node.value if isinstance(node, ast.Return) else None
+            value = written(node.value, module.names) if isinstance(node, ast.Return) else None
             named = "distance" in method.name and "sq" not in method.name
             if named and value is not None and _is_sum_of_squares(value) and not squares_are_used:
                 text = f"{method.name} returns the square of the distance. The square root is missing."
@@ -98,10 +100,20 @@ def why_from_afar(evidence: Evidence, reach_m: float) -> Cause | None:
 
 
 def _is_sum_of_squares(value: ast.expr) -> bool:
-    """Return whether an expression adds powers, as in dx**2 + dy**2, and takes no square root."""
-    powers = [each for each in ast.walk(value) if isinstance(each, ast.BinOp) and isinstance(each.op, ast.Pow)]
+    """Return whether an expression adds two squares, as in dx**2 + dy*dy, and takes no square root."""
     added = isinstance(value, ast.BinOp) and isinstance(value.op, ast.Add)
-    return added and len(powers) >= 2 and not any(map(_is_root, ast.walk(value)))
+    return added and all(map(_squares, (value.left, value.right)))  # type: ignore[attr-defined]
+
+
+def _squares(side: ast.expr) -> bool:
+    """Return whether the expression is x ** 2, x * x or pow(x, 2)."""
+    if isinstance(side, ast.Call) and (dotted(side.func) or "").rpartition(".")[2] == "pow" and len(side.args) > 1:
+        return number(side.args[1], Names()) == SQUARE
+    if not isinstance(side, ast.BinOp):
+        return False
+    if isinstance(side.op, ast.Pow):
+        return number(side.right, Names()) == SQUARE
+    return isinstance(side.op, ast.Mult) and ast.unparse(side.left) == ast.unparse(side.right)
 
 
 def _uses_squares(evidence: Evidence, reach_m: float) -> bool:
@@ -164,17 +176,37 @@ def stored_before_refused(evidence: Evidence) -> Cause | None:
             node.lineno
             for node in ast.walk(method)
             if isinstance(node, ast.Assign) and any((dotted(each) or "").startswith("self.") for each in node.targets)
+            if _may_be_new(node.value)
         ]
         early = [
             store
             for store in stores
             for refusal in refusals
-            if store < refusal and not _of_other_names(method, store, refusal)
+            if store < refusal and not _of_other_names(method, store, refusal) and not _apart(method, store, refusal)
         ]
         if method.name in names and early:
             text = f"{method.name} stores new values in self before it refuses them. Check all values first."
             return Cause("parameter-not-followed", text, Where(module.file, min(early)))
     return None
+
+
+def _may_be_new(value: ast.expr) -> bool:
+    """Return whether a stored value may be that of a parameter. None, True and self.count + 1 are not."""
+    if isinstance(value, ast.Constant):
+        return isinstance(value.value, str | int | float) and not isinstance(value.value, bool)
+    return any(isinstance(each, ast.Name) and each.id != "self" for each in ast.walk(value))
+
+
+def _apart(method: ast.AST, store: int, refusal: int) -> bool:
+    """Return whether only one of the two lines runs, because they are in different branches of an if statement."""
+    for node in ast.walk(method):
+        branches = [node.body, node.orelse] if isinstance(node, ast.If) and node.orelse else []
+        held = [
+            [each[0].lineno <= line <= (each[-1].end_lineno or 0) for each in branches] for line in (store, refusal)
+        ]
+        if all(map(any, held)) and held[0] != held[1]:
+            return True
+    return False
 
 
 def _of_other_names(method: ast.AST, store: int, refusal: int) -> bool:

@@ -31,6 +31,8 @@ NEAR_M = 1.0
 CATCH = "/catch"
 OWN_POSE = "/turtle1/pose"
 COMMANDS = "/turtle1/cmd_vel"
+AT_ONCE = frozenset({"filter", "map", "reduce", "sorted", "min", "max"})
+"""Functions that call their argument before the iteration of a loop ends, if their result is used there."""
 
 
 def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
@@ -203,15 +205,14 @@ def loop_variable(evidence: Evidence) -> Cause | None:
     """Return the cause if a function that is created in a loop uses the loop variable, else None.
 
     All functions that are created in the loop use the last value of the variable. A default value (`name=name`) keeps
-    the value of each iteration.
+    the value of each iteration. A function that is created just before the loop ends has the right value.
     """
     for module in evidence.code.modules:
         for loop in (node for node in module.nodes if isinstance(node, ast.For)):
             name = loop.target.id if isinstance(loop.target, ast.Name) else ""
-            keys = {id(each.value) for each in ast.walk(loop) if isinstance(each, ast.keyword) and each.arg == "key"}
+            early = _called_at_once(loop) | _before_end(loop)
             for made in ast.walk(loop):
-                # A key, such as that of min, is called before the iteration ends.
-                if isinstance(made, ast.Lambda | ast.FunctionDef) and id(made) not in keys and _uses(made, name):
+                if isinstance(made, ast.Lambda | ast.FunctionDef) and id(made) not in early and _uses(made, name):
                     text = (
                         f"The function is created in a loop and uses {shorten(name)}, the loop variable. When it is "
                         "called, the loop has ended, and the variable has its last value. Create it in a method that "
@@ -219,6 +220,28 @@ def loop_variable(evidence: Evidence) -> Cause | None:
                     )
                     return Cause("loop-variable", text, Where(module.file, made.lineno))
     return None
+
+
+def _called_at_once(loop: ast.For) -> set[int]:
+    """Return the ids of the functions that are called before the iteration ends, such as the key of min."""
+    inside = list(ast.walk(loop))
+    calls = [each for each in inside if isinstance(each, ast.Call)]
+    passed = {id(each.value) for each in inside if isinstance(each, ast.keyword) and each.arg == "key"}
+    passed |= {id(value) for each in calls if getattr(each.func, "id", "") in AT_ONCE for value in each.args}
+    direct = {id(each.func) for each in calls} | passed
+    kept = {each.id for each in inside if isinstance(each, ast.Name) and id(each) not in direct}
+    return passed | {id(each) for each in inside if isinstance(each, ast.FunctionDef) and each.name not in kept}
+
+
+def _before_end(loop: ast.For) -> set[int]:
+    """Return the ids of the functions that are created in a block that ends the loop, with break or return."""
+    found: set[int] = set()
+    for node in ast.walk(loop):
+        blocks = [node.body, node.orelse] if isinstance(node, ast.If | ast.For) else []
+        for block in blocks:
+            if block and isinstance(block[-1], ast.Break | ast.Return):
+                found |= {id(each) for statement in block for each in ast.walk(statement)}
+    return found
 
 
 def _uses(made: ast.Lambda | ast.FunctionDef, name: str) -> bool:

@@ -58,6 +58,15 @@ def test_a_field_that_is_compared_with_a_string_is_told(field: str, line: str, w
     ("distance", "step", "words"),
     [
         ("dx ** 2 + dy ** 2", "if d < REACH:", "distance returns the square of the distance. The square root is"),
+        ("dx * dx + dy * dy", "if d < REACH:", "distance returns the square of the distance. The square root is"),
+        ("dx * dx + dy ** 2", "if d < REACH:", "distance returns the square of the distance. The square root is"),
+        ("math.pow(dx, 2) + pow(dy, 2)", "if d < REACH:", "distance returns the square of the distance. The"),
+        ("math.pow(dx, 3) + pow(dy, 3)", "if d < REACH:", ""),
+        ("total", "total = dx * dx + dy * dy\n        if total < REACH:", "distance returns the square of the"),
+        ("dx * ex + dy * ey", "if d < REACH:", ""),
+        ("dx ** 3 + dy ** 3", "if d < REACH:", ""),
+        ("dx * dx + dy * dy", "if math.sqrt(self.distance(place)) < REACH:", ""),
+        ("abs(place.x - self.pose.x) + self.other(place)", "if d < REACH:", ""),
         ("(dx ** 2 + dy ** 2) ** 0.5", "if d < REACH:", ""),
         ("math.sqrt(dx ** 2 + dy ** 2)", "if d < REACH:", ""),
         ("abs(dx) + abs(dy)", "if d < REACH:", ""),
@@ -101,6 +110,10 @@ def test_a_method_for_the_square_of_the_distance_is_not_told() -> None:
     [
         ("self.radius = 1.0", True),
         ("radius = 1.0", False),
+        ("self.radius = parameters[0].value", True),
+        ("self.checked = True", False),
+        ("self.error = None", False),
+        ("self.checks = self.checks + 1", False),
         ("print(self.radius)", False),
     ],
 )
@@ -132,6 +145,8 @@ class Driver(Node):
         ('if each.name == "speed"', False),
         ('elif each.name == "speed"', False),
         ("if each.value < 0.0", True),
+        ("else", False),
+        ("elif each.value < 0.0", False),
     ],
 )
 def test_a_refusal_of_another_parameter_is_not_told(test: str, *, told: bool) -> None:

@@ -130,7 +130,19 @@ def test_a_turtle_that_stands_where_a_withdrawn_target_was_is_told() -> None:
     assert words not in cause(AHEAD[:24], x=1.0, tracks=(gone,))
 
 
-@pytest.mark.parametrize(("made", "found"), [("min(self.poses, key={})", False), ("self.listen({})", True)])
+@pytest.mark.parametrize(
+    ("made", "found"),
+    [
+        ("min(self.poses, key={})", False),
+        ("self.listen({})", True),
+        ("self.others = list(filter({}, self.poses))", False),
+        ("if name == self.wanted:\n                self.listen({})\n                break", False),
+        ("if name == self.wanted:\n                self.listen({})", True),
+        ("self.listen({})\n            return", False),
+        ("def near(pose):\n                return name\n            near(self.pose)", False),
+        ("def near(pose):\n                return name\n            self.listen(near)", True),
+    ],
+)
 def test_a_key_in_a_loop_is_called_before_the_iteration_ends(made: str, *, found: bool) -> None:
     line = f"for name in self.names:\n            {made.format('lambda pose: name')}"
     code = CATCHER.replace("        self.timer", f"        {line}\n        self.timer")
