@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import find_exercise
+from grader.checks.kinds import KINDS
 from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.learner import progress, steps
@@ -38,7 +39,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     wanted = [index for index, each in enumerate(exercise.hints) if part is None or each.part == _part(exercise, part)]
     known = progress.load(root).step(exercise.id)
     index = _next(exercise, wanted, known)
-    if index is None and (part or known.passed) and not _has_failed(exercise, part, known):
+    if index is None and _has_passed(exercise, part, known):
         return f"{_whole(exercise, part)} has passed, so you do not need more hints."
     if index is None:
         whole = _whole(exercise, part)
@@ -116,12 +117,19 @@ def _is_done(exercise: Exercise, hint: Hint, known: StepProgress) -> bool:
     return bool(needed) and needed <= set(known.done) and not set(hint.checks) & set(known.failed)
 
 
-def _has_failed(exercise: Exercise, part: str | None, known: StepProgress) -> bool:
-    """Return whether a check of the part, or of the exercise if `part` is None, failed in the last report."""
+def _has_passed(exercise: Exercise, part: str | None, known: StepProgress) -> bool:
+    """Return whether the part, or the exercise if `part` is None, has passed, and no check of it failed since then.
+
+    A check that was skipped or ended with `error` has not passed, but a passed exercise stays passed. Advice does not
+    count.
+    """
     if part is None:
-        return bool(known.failed)
+        return known.passed and not known.failed
     begin = f"{_part(exercise, part)})"
-    return any(each.id in known.failed and each.title.startswith(begin) for each in exercise.checks)
+    checks = [each for each in exercise.checks if each.title.startswith(begin)]
+    if any(each.id in known.failed for each in checks):
+        return False
+    return known.passed or all(each.id in known.done or each.hidden or KINDS[each.kind].advice for each in checks)
 
 
 def _about(exercise: Exercise, index: int, known: StepProgress) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from grader.checks.answer_spelling import bare, matching, plain
 from grader.checks.cause import Cause
 from grader.checks.causes.why_answer import KEEP_LOOKING, why_list, why_name, why_unreadable
 from grader.checks.kind import Kind, NoParams, choice, number, string, strings
@@ -61,11 +62,12 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class OneOf:
-    """The correct strings. Upper and lower case do not matter, and several spaces count as one."""
+    """The correct strings. Capitals, the number of spaces, quotation marks and final punctuation do not matter."""
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     accepts: tuple[str, ...] = strings(
-        about="The accepted answers. Upper and lower case do not matter, and several spaces count as one."
+        about="The accepted answers. Upper and lower case do not matter, and several spaces count as one. Quotation "
+        "marks around the answer and punctuation after it do not matter."
     )
     cause: str = string("a reason", default=" ", about="The reason that the student reads if the answer is wrong.")
 
@@ -75,7 +77,7 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
     given = _given(evidence, params.answer, STRING, str)
     if isinstance(given, Finding):
         return given
-    if _plain(str(given)) in {_plain(each) for each in params.accepts}:
+    if matching(str(given), params.accepts) in {plain(each) for each in params.accepts}:
         return passed(f'"{shorten(str(given))}" is right.')
     expected = f"{params.answer} is the right answer to this question."
     return _wrong(evidence, params.answer, given, expected, Cause("wrong-answer", params.cause.strip()))
@@ -132,7 +134,7 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
     given = _given(evidence, params.answer, STRING, str)
     if isinstance(given, Finding):
         return given
-    answer = str(given)
+    answer = bare(str(given))  # no name in the graph contains spaces or punctuation
     if answer in truth:
         return passed(f"{shorten(answer)} is right.")
     if not truth:
@@ -141,7 +143,7 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
         return Finding(Status.SKIPPED, text)
     expected = f"{params.answer} is the {params.find} that the question asks for, spelled as `ros2` prints it."
     why = why_name(answer, params.find, truth, _all(evidence.recording, params.find))
-    return _wrong(evidence, params.answer, answer, expected, why)
+    return _wrong(evidence, params.answer, given, expected, why)
 
 
 def _right_answers(recording: Recording, params: GraphQuestion) -> tuple[str, ...]:
@@ -217,7 +219,7 @@ def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Fin
 
 def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str], cause: str) -> Finding:
     assert isinstance(given, tuple)
-    answers_, right = {_plain(each) for each in given}, {_plain(each) for each in truth}
+    answers_, right = {matching(each, truth) for each in given}, {plain(each) for each in truth}
     if answers_ == right:
         return passed(f"Right: {a_list(sorted(given))}.")
     surplus, missing = len(answers_ - right), len(right - answers_)
@@ -227,17 +229,13 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     observed = f"{name} is {shown_answer(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
     expected = "The list contains all correct items, and no other items."
-    why = why_list(given, truth) or Cause(diagnosis, cause.strip())
+    why = why_list([bare(each) for each in given], truth) or Cause(diagnosis, cause.strip())
     return failed(observed, expected, why.at(where))
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, expected: str, why: Cause) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
     return failed(f"{name} is {shown_answer(given)}.", expected, why.at(where))
-
-
-def _plain(answer: str) -> str:
-    return " ".join(answer.lower().split())
 
 
 def shown_answer(answer: Answer) -> str:
