@@ -9,7 +9,7 @@ to start, and the install tree follows this line. The last line of output is one
 - {"recording": {...}};
 - {"doubt": "...", "by_chance": false}: simulated time may misjudge the node (grader.trial.rest.DoubtError);
 - {"overwhelmed": "..."}: the node made the simulator fail;
-- {"refused": "..."}: the machine refused something while the node was running;
+- {"refused": "..."}: the machine refused something, or ended a process of the grader, while the node was running;
 - {"fault": "..."}: the simulator or a launcher failed for another reason.
 
 If the trial has no node, the conductor reads only the first line, and writes only the last line.
@@ -75,12 +75,18 @@ SIMULATORS = ("/pose", "/color_sensor")
 """For each turtle, the simulator publishes on topics whose names end with these strings."""
 
 
+LOST = (
+    "A process of the grader that watches the node was killed (SIGKILL). Perhaps the memory of the machine was used "
+    "up, or an administrator or another program killed it. Try again when more memory is free."
+)
+
+
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
     """The simulator failed because of messages or requests from the node."""
 
 
 class RefusedError(Exception):
-    """The machine refused an operation of the simulator. The node does not count as the cause."""
+    """The machine refused or ended a part of the trial. The node does not count as the cause."""
 
 
 def main(nodes: socket.socket | None = None) -> None:
@@ -144,6 +150,8 @@ def _conduct(order: dict[str, Any], answers: IO[str], nodes: socket.socket | Non
         go = json.loads(line)
         node.start(go["nodes"], sys.stdin.buffer.read(go["tree_bytes"]))
         sigint_s = _run(trial, order["duration_s"])
+        if any(process.lost for process in processes):
+            raise RefusedError(LOST)
         first, *others = (Beside(name, *p.output(), p.end(sigint_s)) for name, p in zip(names, processes, strict=True))
         doubts = tuple(trial.doubts)
         recorder = trial.recorder

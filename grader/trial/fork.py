@@ -26,6 +26,8 @@ class Fork:
     def __init__(self, result: socket.socket) -> None:
         """Watch the forked process. Its fork server has the other end of the socket `result`."""
         self.returncode: int | None = None
+        self.lost = False
+        """Whether the process has ended, but its exit code never arrived (see `wait`)."""
         self._result = result
         self._process: int | None = None
         self._starting = Lock()
@@ -83,5 +85,6 @@ class Fork:
             if not waiting.poll(None if timeout is None else timeout * 1000.0):
                 raise subprocess.TimeoutExpired([], timeout or 0.0)
             data = self._result.recv(STATUS.size)
-            self.returncode = STATUS.unpack(data)[0] if len(data) == STATUS.size else -signal.SIGKILL
+            self.lost = len(data) != STATUS.size
+            self.returncode = -signal.SIGKILL if self.lost else STATUS.unpack(data)[0]
         return self.returncode

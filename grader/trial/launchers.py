@@ -55,6 +55,11 @@ class Launcher(ABC):
     stderr: IO[bytes]
     in_cell: bool
 
+    @property
+    def lost(self) -> bool:
+        """Whether the process has ended because a process of the grader, its ancestor, was killed."""
+        return False
+
     @abstractmethod
     def await_started(self) -> tuple[int, ...]:
         """Wait until the process exists.
@@ -162,6 +167,11 @@ class LauncherInCell(Launcher):
         for descriptor in passed:
             os.close(descriptor)
         self._fork = Fork(result)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the process has ended because a process of the grader, its ancestor, was killed."""
+        return self._fork.lost
 
     def await_started(self) -> tuple[int, ...]:
         """Wait until the process has been forked. Return its process id, and the process id of bubblewrap."""

@@ -203,6 +203,11 @@ class NodeProcess:
             self._by = "SIGTERM"
             self._signal(signal.SIGTERM)
 
+    @property
+    def lost(self) -> bool:
+        """Whether the process has ended because a process of the grader was killed. The node is not the cause."""
+        return self._launcher.lost
+
     def end(self, now_s: float) -> ProcessEnd:
         """Return how the process of the node ended. Call this method only after `ended` has returned True."""
         return ProcessEnd(self._by, self._launcher.poll(), now_s, self._took_s, self._out_of)  # type: ignore[arg-type]

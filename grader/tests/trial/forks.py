@@ -7,6 +7,7 @@ import os
 import signal
 import tarfile
 from pathlib import Path
+from threading import Timer
 from typing import TYPE_CHECKING
 
 from grader.ros.installation import find_ros
@@ -16,6 +17,8 @@ from grader.trial.recording import Pose
 from grader.trial.trial import Plan, Trial
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from grader.trial.fork_client import ForkServer
     from grader.trial.recording import Recording
 
@@ -23,15 +26,27 @@ WALL = Plan("wall", Pose(5.5, 5.5, 0.0), None, 0.1)
 """A trial in wall time."""
 
 
-def run(script: str, plan: Plan = WALL, *, share: bool = False) -> Recording:
-    """Run the script as the node of a trial in wall time. `share` is the argument of fork_client.conductors."""
+def run(
+    script: str, plan: Plan = WALL, *, share: bool = False, meanwhile: Callable[[], object] = lambda: None
+) -> Recording:
+    """Run the script as the node of a trial in wall time. `share` is the argument of fork_client.conductors.
+
+    `meanwhile` is called in another thread, one second after the trial is ready.
+    """
+    timer = Timer(1.0, meanwhile)
     tree = io.BytesIO()
     with tarfile.open(fileobj=tree, mode="w") as archive:
         member = tarfile.TarInfo("package/lib/package/node")
         member.mode, member.size = 0o755, len(script.encode())
         archive.addfile(member, io.BytesIO(script.encode()))
     with Trial(plan, with_turtlesim(find_ros()), in_cell=True, share=share) as trial:
-        return trial.run("package", "node", tree.getvalue())
+        trial.await_ready()
+        timer.start()
+        try:
+            return trial.run("package", "node", tree.getvalue())
+        finally:
+            timer.cancel()
+            timer.join()
 
 
 def mapped(pid: int) -> set[str]:

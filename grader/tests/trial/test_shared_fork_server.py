@@ -8,6 +8,7 @@ import subprocess
 import pytest
 
 from grader.common.interpreter import interpreter
+from grader.errors import MachineError
 from grader.ros import installation
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
@@ -55,6 +56,14 @@ def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_starte
         (forked,) = children(server._process.pid)
         kill(server)
         until_gone(forked)
+
+
+@pytest.mark.parametrize("share", [False, True])
+def test_a_node_is_not_blamed_if_its_server_is_killed(*, share: bool) -> None:
+    server = fork_client.nodes(with_turtlesim(find_ros()))
+    script = "#!/usr/bin/env python3\nimport time\ntime.sleep(60.0)\n"
+    with pytest.raises(MachineError, match=r"^The simulator (failed\. A process .*|)was killed \(SIGKILL\)"):
+        run(script, share=share, meanwhile=lambda: kill(server))
 
 
 def test_a_fork_counts_as_killed_if_the_server_ends_before_the_request() -> None:
