@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.why_rate import (
     callbacks_of,
     is_repeated,
+    may_send,
     reaches,
     sends_each_time,
     why_several_calls,
@@ -47,9 +48,9 @@ def why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: flo
     return _period_cause(why, mean, rate_hz) if why.diagnosis == "timer-period" else why
 
 
-def why_slow_timer(evidence: Evidence, rate_hz: float, amount: int) -> Cause | None:
-    """Return the cause if a timer is so slow that only about `amount` messages arrive, else None."""
-    for timer, period in _timers(evidence):
+def why_slow_timer(evidence: Evidence, call: str, rate_hz: float, amount: int) -> Cause | None:
+    """Return the cause if a timer that calls `call` is so slow that only about `amount` messages arrive, else None."""
+    for timer, period in _timers(evidence, call):
         if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
             why = Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, rate_hz))
             return _period_cause(why, period, rate_hz)
@@ -59,11 +60,11 @@ def why_slow_timer(evidence: Evidence, rate_hz: float, amount: int) -> Cause | N
 def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: float) -> Cause:
     """Return the cause of a wrong mean rate, for example a timer or a sleep with a wrong period."""
     code = evidence.code
-    timers = _timers(evidence)
+    timers = _timers(evidence, call)
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
             return Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, rate_hz))
-    asleep = why_sleep_in_callback(evidence)
+    asleep = why_sleep_in_callback(evidence) if mean * rate_hz > 1.0 else None
     if asleep is not None:
         return asleep
     for sleep in code.calls("sleep"):
@@ -76,7 +77,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
     if len(timers) > 1:
         return Cause(
             "several-timers",
-            f"There are {len(timers)} timers. Each timer calls its method at its own rate.",
+            f"There are {len(code.calls('create_timer'))} timers. Each timer calls its method at its own rate.",
             timers[1][0].where,
         )
     counted = _every_few_calls(evidence, noun, call, mean) if len(timers) == 1 else None
@@ -90,7 +91,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
 
 def _every_few_calls(evidence: Evidence, noun: str, call: str, mean: float) -> Cause | None:
     """Return the cause if the callback of the only timer sends only on every 2nd, 3rd, ... call, else None."""
-    timer, period = _timers(evidence)[0]
+    timer, period = _timers(evidence, call)[0]
     if not period or sends_each_time(evidence, call):
         return None
     calls = round(mean / period)
@@ -128,7 +129,7 @@ def _right_period(timer: Call, rate_hz: float) -> tuple[Edit, ...]:
     return at(Where(timer.module.file, node.lineno), ast.unparse(node), f"{1.0 / rate_hz:g}")
 
 
-def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
-    """Return the calls to create_timer, each with the period (s) if the period is a constant."""
-    calls = evidence.code.calls("create_timer")
-    return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]
+def _timers(evidence: Evidence, call: str) -> list[tuple[Call, float | None]]:
+    """Return the timers whose callback may call `call`, each with the period (s) if the period is a constant."""
+    made = [timer for timer in evidence.code.calls("create_timer") if may_send(timer, call)]
+    return [(timer, constant(timer.argument(0, "timer_period_sec"), timer.module.names)) for timer in made]

@@ -9,9 +9,10 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.waiting import has_threads
+from grader.checks.causes.each_time import each_time, evaluated
+from grader.checks.causes.waiting import SPINS, has_threads
 from grader.common.words import a_list
-from grader.submission.constants import dotted, number
+from grader.submission.constants import dotted, evaluate, number
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -29,10 +30,12 @@ waits."""
 SEVERAL = 0.1
 """Several calls in a function explain a wrong rate if their number differs from the number of messages per period by at
 most this fraction."""
-PAUSES = ("sleep", "sleep_for", "sleep_until", "spin_once", "wait", "get", "join", "input")
+PAUSES = ("sleep", "sleep_for", "sleep_until", *SPINS, "wait", "get", "join", "input")
 """Functions and methods whose purpose is to wait."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
+EACH_FRAME = ("pose", "color_sensor")
+"""The last parts of the names of the topics on which turtlesim publishes once per frame."""
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
@@ -40,53 +43,84 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))
-            busy = isinstance(node, ast.While) and _calls(node, call) and not _pauses(node, call)
+            busy = isinstance(node, ast.While) and _calls(node, call) and not _pauses(module, node, call)
             if busy and mean_s < min(OFTEN * period_s, NO_PAUSE_S):
                 return Cause("loop-without-pause", f"This loop calls {call} without a pause.", where)
     never_waits = period_of_zero(evidence, call)
     if never_waits is not None:
         return Cause("timer-period", WITHOUT_PAUSE, never_waits.where)
-    if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
+    if abs(mean_s - FRAME_S) > 0.1 * FRAME_S or _sets_that_rate(evidence, call, mean_s):
         return None
-    for module, name in callbacks_of(evidence):
-        for node in module.nodes:
-            if isinstance(node, ast.FunctionDef) and node.name == name and reaches(module, node, call):
+    for subscription in evidence.code.calls("create_subscription"):
+        module, topic = subscription.module, evaluate(subscription.argument(1, "topic"), subscription.module.names)
+        if isinstance(topic, str) and topic.rpartition("/")[2] not in EACH_FRAME:
+            continue
+        for node in called_by(subscription, 2):
+            if reaches(module, node, call):
+                name = node.name
                 text = f"{name} is called for every message, 62.5 times per second, and each time it calls {call}."
                 return Cause("every-message", text, Where(module.file, node.lineno))
     return None
 
 
-def _pauses(loop: ast.While, call: str) -> bool:
+def _sets_that_rate(evidence: Evidence, call: str, mean_s: float) -> bool:
+    """Return whether a timer or a sleep may be the reason for this mean interval (s)."""
+    lengths = [_length(sleep) for sleep in evidence.code.calls("sleep")]
+    lengths += [
+        number(timer.argument(0, "timer_period_sec"), timer.module.names)
+        for timer in evidence.code.calls("create_timer")
+        if may_send(timer, call)
+    ]
+    return any(length is None or abs(length - mean_s) <= 0.1 * mean_s for length in lengths)
+
+
+def called_by(maker: Call, place: int) -> list[ast.FunctionDef]:
+    """Return the functions in the module that may be the callback, the argument with this index."""
+    name = (dotted(maker.argument(place, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
+    return [each for each in maker.module.nodes if isinstance(each, ast.FunctionDef) and each.name == name]
+
+
+def may_send(timer: Call, *calls: str) -> bool:
+    """Return whether the callback of the timer may call one of these functions. It may if it is not in the module."""
+    own = called_by(timer, 1)
+    return not own or any(reaches(timer.module, each, *calls) for each in own)
+
+
+def _pauses(module: Module, loop: ast.While, call: str) -> bool:
     """Return whether a loop waits in some way, or calls `call` only if a condition is true."""
     inner = [each for statement in loop.body for each in ast.walk(statement)]
-    waits = _calls(loop, *PAUSES) or any(isinstance(each, ast.While) and not _calls(each, call) for each in inner)
+    waits = reaches(module, loop, *PAUSES) or any(
+        isinstance(each, ast.While) and not _calls(each, call) for each in inner
+    )
     return waits or not any(_calls(each, call) for each in loop.body if not isinstance(each, ast.If))
 
 
 def period_of_zero(evidence: Evidence, call: str) -> Call | None:
     """Return the call that creates a timer with the period 0 whose callback may call `call`, or None."""
     for timer in evidence.code.calls("create_timer"):
-        if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
-            name = (dotted(timer.argument(1, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
-            own = [each for each in timer.module.nodes if isinstance(each, ast.FunctionDef) and each.name == name]
-            if not own or any(reaches(timer.module, each, call) for each in own):
-                return timer
+        if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0 and may_send(timer, call):
+            return timer
     return None
 
 
-def reaches(module: Module, function: ast.FunctionDef, call: str) -> bool:
-    """Return whether a method calls `call`, either directly or through another method of the same object."""
-    if _calls(function, call):
-        return True
-    names = [dotted(node.func) or "" for node in ast.walk(function) if isinstance(node, ast.Call)]
-    own = {name.removeprefix("self.") for name in names if name.startswith("self.")}
-    methods = [node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name in own]
-    return any(_calls(method, call) for method in methods)
+def reaches(module: Module, part: ast.AST, *calls: str) -> bool:
+    """Return whether a part of the module calls one of these functions, either directly or through its functions."""
+    functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
+    waiting, seen = [part], {id(part)}
+    while waiting:
+        node = waiting.pop()
+        if _calls(node, *calls):
+            return True
+        names = {_name(each) for each in ast.walk(node) if isinstance(each, ast.Call)}
+        new = [each for each in functions if each.name in names and id(each) not in seen]
+        seen |= {id(each) for each in new}
+        waiting += new
+    return False
 
 
 def why_publishers_grow(evidence: Evidence) -> Cause | None:
     """Return the cause if a callback creates a publisher, else None."""
-    found = _made_in_callback(evidence, "create_publisher")
+    found = _made_in_callback(evidence, "create_publisher", always=True)
     if found is None:
         return None
     name, where = found
@@ -99,7 +133,7 @@ def why_timers_grow(evidence: Evidence) -> Cause | None:
 
     A callback that also stops a timer is not reported, because it may replace its own timer.
     """
-    found = _made_in_callback(evidence, "create_timer")
+    found = _made_in_callback(evidence, "create_timer", always=True)
     if found is None:
         return None
     name, where = found
@@ -147,10 +181,9 @@ def _rate_without_spin(evidence: Evidence) -> Cause | None:
 
 
 def _sleeps_of_rates(evidence: Evidence) -> list[Call]:
-    """Return the calls to a method named sleep, except the function sleep of the module time."""
-    return [
-        call for call in evidence.code.calls("sleep") if dotted(call.node.func) not in (None, "sleep", "time.sleep")
-    ]
+    """Return the calls to a method named sleep without an argument, such as that of a Rate."""
+    calls = evidence.code.calls("sleep")
+    return [call for call in calls if dotted(call.node.func) not in (None, "sleep") and not call.node.args]
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
@@ -158,12 +191,11 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef):
-                lines = sorted(
-                    each.lineno
-                    for each in ast.walk(node)
-                    if isinstance(each, ast.Call) and getattr(each.func, "attr", "") == call
-                )
-                every = len(lines) == _most(node.body, call)
+                found = [each for each in ast.walk(node) if isinstance(each, ast.Call)]
+                found = [each for each in found if getattr(each.func, "attr", "") == call]
+                lines = sorted(each.lineno for each in found)
+                owners = {ast.unparse(each.func).rpartition(".")[0] for each in found}
+                every = len(lines) == _most(node.body, call) and len(owners) == 1
                 if len(lines) > 1 and every and abs(period_s / mean_s - len(lines)) <= SEVERAL * len(lines):
                     named = a_list(list(map(str, lines)))
                     text = f"Each time {node.name} runs, it calls {call} {len(lines)} times, on lines {named}."
@@ -174,7 +206,7 @@ def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: fl
 def _most(body: list[ast.stmt], call: str) -> int:
     """Return the maximum number of times that the statements call `call`, if each loop has one iteration.
 
-    Only one branch of an if runs. After an if that contains return, continue or break, nothing more is counted.
+    Only one branch of an if or match runs. After an if that contains return, continue or break, nothing is counted.
     """
     amount = 0
     for statement in body:
@@ -184,8 +216,10 @@ def _most(body: list[ast.stmt], call: str) -> int:
                 return amount
         elif isinstance(statement, ast.For | ast.While | ast.With | ast.Try):
             amount += sum(_most(getattr(statement, part, []), call) for part in ("body", "orelse", "finalbody"))
+        elif isinstance(statement, ast.Match):
+            amount += max(_most(case.body, call) for case in statement.cases)
         else:
-            calls = (each for each in ast.walk(statement) if isinstance(each, ast.Call))
+            calls = (each for each in evaluated(statement) if isinstance(each, ast.Call))
             amount += sum(getattr(each.func, "attr", "") == call for each in calls)
     return amount
 
@@ -222,15 +256,18 @@ def _length(sleep: Call) -> float | None:
     return number(sleep.argument(0, "secs"), sleep.module.names)
 
 
-def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | None:
-    """Return the name of a callback that calls `maker` and the place of the call, or None."""
+def _made_in_callback(evidence: Evidence, maker: str, *, always: bool = False) -> tuple[str, Where] | None:
+    """Return the name of a callback that calls `maker` and the place of the call, or None.
+
+    With `always`, the callback must call `maker` each time. In `if self.timer is None`, it may do so only once.
+    """
     for module in evidence.code.modules:
         called = {
             name for each, name in callbacks_of(evidence, "create_timer", "create_subscription") if each is module
         }
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef) and node.name in called:
-                for inner in ast.walk(node):
+                for inner in each_time(node.body) if always else ast.walk(node):
                     if isinstance(inner, ast.Call) and _name(inner) == maker:
                         return node.name, Where(module.file, inner.lineno)
     return None

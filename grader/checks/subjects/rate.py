@@ -154,7 +154,7 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
     if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
         return failed(f"{observed} {end_observed(evidence)}", expected, why)
-    slow = why_slow_timer(evidence, params.rate_hz, amount)
+    slow = why_slow_timer(evidence, what.call, params.rate_hz, amount)
     if slow is not None:
         return failed(observed, expected, slow)
     asleep = why_rate_in_callback(evidence)

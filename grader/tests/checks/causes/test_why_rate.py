@@ -46,6 +46,9 @@ def often(source: str, mean_s: float) -> tuple[str, int | None] | None:
         ("while True: publish(msg); stop.wait(0.5)", 0.001, False),
         ("while True: publish(msg); time.sleep(0.5)", 0.001, False),
         ("while True: publish(msg); rclpy.spin_once(self)", 0.001, False),
+        ("while True: publish(msg); rclpy.spin_until_future_complete(self, done, timeout_sec=0.02)", 0.02, False),
+        ("while True: publish(msg); self.nap()\n\n    def nap(self):\n        time.sleep(0.02)", 0.02, False),
+        ("while True: publish(msg); self.look()  # look\n\n    def look(self):\n        print(3)", 0.02, True),
         ("while True: print(msg)", 0.001, False),
         ("for each in range(3): publish(each)", 0.001, False),
     ],
@@ -64,6 +67,12 @@ SUBSCRIBES = 'self.create_subscription(Pose, "/turtle1/pose", self.send, 10)'
         (SUBSCRIBES, "publish(msg)", FRAME_S, True),
         ('self.create_subscription(Pose, "/pose", qos_profile=1, callback=self.send)', "publish(msg)", FRAME_S, True),
         (SUBSCRIBES.replace("self.send", "self.driver.send"), "publish(msg)", FRAME_S, True),
+        (SUBSCRIBES.replace("pose", "color_sensor"), "publish(msg)", FRAME_S, True),
+        (SUBSCRIBES.replace("/turtle1/pose", "/goal"), "publish(msg)", FRAME_S, False),
+        (f"{SUBSCRIBES}; self.create_timer(1 / 60, self.other)", "if msg.x > 9: publish(msg)", FRAME_S, False),
+        (f"{SUBSCRIBES}; self.create_timer(PERIOD, self.other)", "if msg.x > 9: publish(msg)", FRAME_S, False),
+        (f"{SUBSCRIBES}; self.create_timer(0.5, self.other)", "publish(msg)", FRAME_S, True),
+        (f"while ok(): self.other(); time.sleep(0.016)  # {SUBSCRIBES}", "publish(msg)", FRAME_S, False),
         (SUBSCRIBES, "publish(msg)", 1.09 * FRAME_S, True),
         (SUBSCRIBES, "publish(msg)", 0.91 * FRAME_S, True),
         (SUBSCRIBES, "publish(msg)", 1.11 * FRAME_S, False),
@@ -93,6 +102,12 @@ ONCE = "self.timer = self.create_timer(0.5, self.send)"
         (ONCE, "self.destroy_timer(self.timer); self.create_timer(0.5, self.other)  # look", False),
         (ONCE, "self.timer.reset(); self.create_timer(0.5, self.other)  # look", True),
         ("self.create_timer(0.5, self.send)", "make()()", False),
+        (ONCE, "if self.second is None: self.second = self.create_timer(0.5, self.other)  # look", False),
+        (ONCE, "if self.made: return\n        self.create_timer(0.5, self.other)  # look", False),
+        (ONCE, "self.second = self.second or self.create_timer(0.5, self.other)  # look", False),
+        (ONCE, "self.second = self.second if self.second else self.create_timer(0.5, self.other)  # look", False),
+        (ONCE, "if self.made: self.count = 0\n        self.create_timer(0.5, self.other)  # look", True),
+        (ONCE, "with self.lock:\n            self.create_timer(0.5, self.other)  # look", True),
     ],
 )
 def test_a_timer_that_a_callback_makes_is_found(made: str, sent: str, *, found: bool) -> None:
@@ -103,11 +118,18 @@ def test_a_timer_that_a_callback_makes_is_found(made: str, sent: str, *, found: 
 
 
 @pytest.mark.parametrize(
-    ("made", "found"),
-    [("self.create_timer(0.5, self.send)", True), (SUBSCRIBES, True), ("self.create_timer(0.5, self.other)", False)],
+    ("made", "guard", "found"),
+    [
+        ("self.create_timer(0.5, self.send)", "", True),
+        (SUBSCRIBES, "", True),
+        ("self.create_timer(0.5, self.other)", "", False),
+        (SUBSCRIBES, "if self.publisher is None: ", False),
+        (SUBSCRIBES, "if self.publisher is None: print(3)\n        ", True),
+    ],
 )
-def test_a_publisher_that_each_call_makes_anew_is_found(made: str, *, found: bool) -> None:
-    source = NODE.format(made=made, at_send="", sent='self.publisher = self.create_publisher(Twist, "/a", 10)  # look')
+def test_a_publisher_that_each_call_makes_anew_is_found(made: str, guard: str, *, found: bool) -> None:
+    sent = f'{guard}self.publisher = self.create_publisher(Twist, "/a", 10)  # look'
+    source = NODE.format(made=made, at_send="", sent=sent)
     cause = why_publishers_grow(evidence(recording([]), submission({NODE_FILE: source})))
     reported = None if cause is None else (cause.diagnosis, cause.where.line if cause.where else None)
     assert reported == (("publisher-in-callback", line_with(LOOK, source)) if found else None)
@@ -156,6 +178,11 @@ TWICE = "publish(msg); self.publisher.publish(msg)"
         ("if a:\n            self.p.publish(1)\n            return\n        self.p.publish(2)", 0.25, False),
         ("for a in b:\n            if a: self.p.publish(1)\n            else: self.p.publish(2)", 0.25, False),
         ("self.p.publish(1)", 0.25, False),
+        ("self.p.publish(1); self.q.publish(2)", 0.25, False),
+        ("self.p.publish(1) if a else self.p.publish(2)", 0.25, False),
+        ("self.p.publish(1); a and self.p.publish(2)", 0.25, False),
+        ("match a:\n            case 1: self.p.publish(1)\n            case _: self.p.publish(2)", 0.25, False),
+        ("match a:\n            case _: self.p.publish(1); self.p.publish(2)", 0.25, True),
     ],
 )
 def test_calls_that_all_run_each_time_are_counted(sent: str, mean_s: float, *, found: bool) -> None:
@@ -172,6 +199,7 @@ def test_calls_that_all_run_each_time_are_counted(sent: str, mean_s: float, *, f
         ("self.rate = self.create_rate(1)", "self.rate.sleep()", True),
         ("self.rate = self.create_rate(1); Thread(target=spin).start()", "self.rate.sleep()", False),
         ("self.rate = self.create_rate(1)", "time.sleep(1)", False),
+        ("self.rate = self.create_rate(1); import time as t", "t.sleep(1)", False),
         ("self.rate = 1", "self.rate.sleep()", False),
     ],
 )

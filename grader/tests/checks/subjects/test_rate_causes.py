@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.causes.why_period import why_slow_timer
 from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
 from grader.tests.checks.shapes import SHAPES
 
@@ -49,6 +50,29 @@ def test_a_callback_that_sends_in_some_of_its_calls_is_told_in_how_many(timer: s
     finding_ = rate("one hertz", (TIMER, timer), chooses)
     assert (finding_.diagnosis, str(finding_.where)) == ("wrong-rate", f"{NODE_FILE}:10")
     assert ("send is called every 0.25 s, and one in 4 calls sends a command." in finding_.cause) == found
+
+
+REPORTS = ("    def send(self):", "    def report(self):\n        print(3)\n\n    def send(self):")
+
+
+@pytest.mark.parametrize(("called", "line"), [("report", 11), ("send", 10)])
+def test_a_timer_that_sends_nothing_does_not_set_the_rate(called: str, line: int) -> None:
+    timers = f"self.create_timer(1.0, self.{called})\n        self.timer = self.create_timer(PERIOD, self.send)"
+    found = rate("one hertz", (f"self.timer = {TIMER}", timers), REPORTS)
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:{line}")
+
+
+@pytest.mark.parametrize(("called", "told"), [("report", False), ("send", True)])
+def test_only_a_timer_that_sends_explains_too_few_messages(called: str, *, told: bool) -> None:
+    slow = node((TIMER, f"self.create_timer(4.0, self.{called})"), REPORTS)
+    assert (why_slow_timer(evidence(recording([]), slow), "publish", 2.0, 2) is not None) == told
+
+
+@pytest.mark.parametrize(("shape", "diagnosis"), [("four hertz", "timer-period"), ("one hertz", "sleep-in-callback")])
+def test_a_sleep_does_not_explain_too_many_messages(shape: str, diagnosis: str) -> None:
+    unknown = (TIMER, "self.create_timer(self.period, self.send)")
+    found = rate(shape, unknown, ("        msg = Twist()", "        time.sleep(0.2)\n        msg = Twist()"))
+    assert found.diagnosis == diagnosis
 
 
 def test_a_period_by_a_name_is_found() -> None:
