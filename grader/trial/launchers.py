@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 READY = b"\x00ready\n"
 """The launcher writes this output when it is ready, before any of the student's code runs."""
 _PLAIN = {"PATH": "/usr/bin:/bin"}
+_NO_FORKS = "the process of the grader that forks nodes has exited"
 _ENDS_S = 5.0
 
 
@@ -137,7 +138,7 @@ class LauncherInCell(Launcher):
         """Create the cell, and request a fork through the socket `nodes`.
 
         Raises:
-            LaunchError: bubblewrap could not create the cell.
+            LaunchError: bubblewrap could not create the cell, or no process is left that forks nodes.
         """
         with call_filter() as filter_fd:
             self._cell = Holder(
@@ -163,9 +164,14 @@ class LauncherInCell(Launcher):
         self.stdout, self.stderr = os.fdopen(stdout, "rb", buffering=0), os.fdopen(stderr, "rb", buffering=0)
         result, its_result = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         passed = [process, its_stdin, its_stdout, its_stderr, its_result.detach()]
-        entering.pass_descriptors(nodes, b".", passed)
-        for descriptor in passed:
-            os.close(descriptor)
+        try:
+            entering.pass_descriptors(nodes, b".", passed)
+        except (BrokenPipeError, ConnectionResetError) as error:
+            self._cell.close()
+            raise LaunchError(_NO_FORKS) from error
+        finally:
+            for descriptor in passed:
+                os.close(descriptor)
         self._fork = Fork(result)
 
     @property

@@ -2,7 +2,9 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import signal
+import socket
 import subprocess
 import tarfile
 from typing import TYPE_CHECKING
@@ -10,7 +12,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 import grader.trial
+from grader.sandbox import bubblewrap
+from grader.sandbox.limits import NODE_LIMITS
 from grader.tests.in_ros import HANG_S
+from grader.trial import launchers
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -55,6 +60,27 @@ def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> 
         timeout=HANG_S,
         check=False,
     )
+
+
+class NoCell:
+    """Replaces Holder, and creates no cell."""
+
+    def __init__(self, *_: object) -> None:
+        pass
+
+    def await_ready(self) -> int:
+        return os.open(os.devnull, os.O_RDONLY)
+
+    def close(self) -> None:
+        pass
+
+
+def test_the_error_says_that_no_process_is_left_that_forks_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(launchers, "Holder", NoCell)
+    nodes, fork_server = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    fork_server.close()
+    with nodes, pytest.raises(launchers.LaunchError, match="the process of the grader that forks nodes has exited"):
+        launchers.LauncherInCell(bubblewrap.View(()), NODE_LIMITS, nodes)
 
 
 def printed(done: subprocess.CompletedProcess[bytes]) -> bytes:
