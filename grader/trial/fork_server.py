@@ -73,6 +73,7 @@ def main() -> None:
     order, passed = _next_order(requests)
     if "conductors" in order:
         kind = "conductor"
+        os.setsid()  # no fork shares a process group with the server for nodes
         _set_environment(order["conductors"])
         if not problem:
             _, problem = _try(_import_conductor)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 
@@ -54,6 +55,7 @@ def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_starte
         server = fork_client.nodes(with_turtlesim(find_ros()))
         assert server._process is not None
         (forked,) = children(server._process.pid)
+        assert os.getsid(forked) == forked, "a signal to the process group of one server reaches the other"
         kill(server)
         until_gone(forked)
 
