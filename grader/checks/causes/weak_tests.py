@@ -85,7 +85,7 @@ def always_false(code: TestCode) -> Cause | None:
                 break
             value = node.test if isinstance(node, ast.Assert) else None
             is_false = isinstance(value, ast.Constant) and not value.value
-            if is_false or _is_call_of(node, "fail"):
+            if is_false or (isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and _fails(node.value)):
                 text = f"{shorten(test.node.name, 60)} fails on every node, even on the correct node."
                 return Cause("always-fails", text, Where(test.module.file, node.lineno))
     return None
@@ -117,10 +117,13 @@ def in_a_loop(code: TestCode) -> Cause | None:
     """Return the cause if all asserts of a test are in a loop over a list that may be empty, else None."""
     for test in code.tests:
         asserts = [node for node in ast.walk(test.node) if isinstance(node, ast.Assert)]
+        others = [
+            node for node in ast.walk(test.node) if isinstance(node, ast.Raise | ast.Call) and _asserts_here(node)
+        ]
         loops = [node for node in ast.walk(test.node) if isinstance(node, ast.For)]
         for node in loops if asserts else ():
             inside = set(map(id, ast.walk(node)))
-            if _may_be_empty(node.iter, test.module) and {id(each) for each in asserts} <= inside:
+            if _may_be_empty(node.iter, test.module) and {id(each) for each in asserts + others} <= inside:
                 text = "If there is nothing to loop over, for example no message, the assert in this loop never runs."
                 return Cause("assert-in-loop", text, Where(test.module.file, node.lineno))
     return None
@@ -170,14 +173,13 @@ def _functions(modules: tuple[Module, ...]) -> list[tuple[str, ast.AST]]:
 
 def _asserts(node: ast.AST) -> bool:
     """Return whether a function or an except clause can itself make a test fail, with pytest or with unittest."""
-    for each in ast.walk(node):
-        if isinstance(each, ast.Assert | ast.Raise):
-            return True
-        if isinstance(each, ast.Call):
-            name = _last(each.func)
-            if name in RAISING or name.startswith("assert"):
-                return True
-    return False
+    return any(map(_asserts_here, ast.walk(node)))
+
+
+def _asserts_here(node: ast.AST) -> bool:
+    """Return whether this syntax node itself can make a test fail: an assert, a raise, or such a call."""
+    name = _last(node.func) if isinstance(node, ast.Call) else ""
+    return isinstance(node, ast.Assert | ast.Raise) or name in RAISING or name.startswith("assert")
 
 
 def _mentioned(node: ast.AST) -> set[str]:
@@ -190,6 +192,11 @@ def _mentioned(node: ast.AST) -> set[str]:
 
 def _last(node: ast.expr) -> str:
     return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+
+
+def _fails(node: ast.AST) -> bool:
+    """Return whether the node is a call to the function fail of pytest or unittest, not of another object."""
+    return isinstance(node, ast.Call) and dotted(node.func) in ("pytest.fail", "fail", "self.fail")
 
 
 def _is_call_of(node: ast.AST, name: str) -> bool:

@@ -51,7 +51,8 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
         return late
     if not evidence.commands:
         silent = Cause("no-publish", "publish is never called.", evidence.place("create_publisher"))
-        why = why_nothing(evidence, ("publish",)) or (None if evidence.code.calls("publish") else silent)
+        named = any(getattr(node, "attr", "") == "publish" for module in evidence.code.modules for node in module.nodes)
+        why = why_nothing(evidence, ("publish",)) or (None if named else silent)
         return why or Cause("never-drives", _where_sent(evidence), evidence.place("create_publisher"))
     wrong = _wrong_name(evidence)
     if wrong is not None:

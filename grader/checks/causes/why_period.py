@@ -130,6 +130,11 @@ def _right_period(timer: Call, rate_hz: float) -> tuple[Edit, ...]:
 
 
 def _timers(evidence: Evidence, call: str) -> list[tuple[Call, float | None]]:
-    """Return the timers whose callback may call `call`, each with the period (s) if the period is a constant."""
-    made = [timer for timer in evidence.code.calls("create_timer") if may_send(timer, call)]
+    """Return the timers whose callback may call `call`, each with the period (s) if the period is a constant.
+
+    If nothing calls `call`, the node sends in some other way, and each timer may be the reason.
+    """
+    made = evidence.code.calls("create_timer")
+    if evidence.code.calls(call):
+        made = [timer for timer in made if may_send(timer, call)]
     return [(timer, constant(timer.argument(0, "timer_period_sec"), timer.module.names)) for timer in made]

@@ -44,28 +44,32 @@ def why_qos(evidence: Evidence) -> Cause | None:
 
 def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     """Return the reason why the node sends nothing, or None. `sends` are the names of methods such as publish."""
-    fault = timer_fault(evidence)
+    fault = timer_fault(evidence, sends)
     if fault is not None:
         return fault
     return (
         never_activated(evidence)
         or named_only(evidence, "rclpy.spin")
         or _stuck(evidence)
-        or never_called(evidence, sends)
-        or _no_spin(evidence)
+        or never_called(evidence, sends, only=True)
+        or _no_spin(evidence, sends)
         or not_spun(evidence)
         or _nothing_to_spin(evidence)
         or never_set(evidence, sends)
+        or never_called(evidence, sends)
     )
 
 
-def _no_spin(evidence: Evidence) -> Cause | None:
+def _no_spin(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     if any(evidence.code.calls(name) for name in SPINS):
         return None
     rates = evidence.code.calls("create_rate")
     if rates and evidence.code.calls("sleep") and not evidence.code.calls("create_timer"):
         text = "The method sleep of a Rate waits forever, because nothing spins the node. Use a timer and rclpy.spin."
         return Cause("no-spin", text, rates[0].where)
+    loops = [node for module in evidence.code.modules for node in module.nodes if isinstance(node, ast.While)]
+    if any(calls_method(loop, name) for loop in loops for name in sends) and not any(map(evidence.code.calls, WAKES)):
+        return None  # a loop sends, and the node has nothing to spin
     return Cause("no-spin", "Without rclpy.spin, no timer callback is ever called.", evidence.code.start)
 
 
@@ -92,10 +96,12 @@ def _stuck(evidence: Evidence) -> Cause | None:
             if waiting is not None:
                 return waiting.at(where)
             endless = isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS and not _ends(node)
+            endless = endless and not spins(node)
             if method.name == "__init__" and endless:
                 text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)
-            if method.name == "__init__" and isinstance(node, ast.Call) and dotted(node.func) == "rclpy.spin":
+            spun = isinstance(node, ast.Call) and dotted(node.func) == "rclpy.spin"
+            if method.name == "__init__" and spun and getattr(node, "lineno", 0) < method.body[-1].lineno:
                 text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run until then."
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.While) and only_waits(node):
@@ -162,8 +168,20 @@ def _ends(loop: ast.While) -> bool:
     return any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in ast.walk(loop))
 
 
-def never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the cause if a method that sends something is never called and is not a callback, else None."""
+def spins(part: ast.AST) -> bool:
+    """Return whether a part of the code spins a node, so that callbacks are called meanwhile."""
+    calls = (node.func for node in ast.walk(part) if isinstance(node, ast.Call))
+    return any(getattr(each, "attr", getattr(each, "id", "")) in SPINS for each in calls)
+
+
+def never_called(evidence: Evidence, sends: Sequence[str], *, only: bool = False) -> Cause | None:
+    """Return the cause if a method that sends something is never called and is not a callback, else None.
+
+    With `only`, there must be no other method that sends something.
+    """
+    senders = [each for _, each in methods_of(evidence) if any(calls_method(each, name) for name in sends)]
+    if only and len(senders) > 1:
+        return None
     for module, method in methods_of(evidence):
         called = [
             node for node in ast.walk(method) if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in sends

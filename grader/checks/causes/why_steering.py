@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.waiting import functions_in_callbacks, has_threads, inside
-from grader.checks.causes.why_silent import calls_method
+from grader.checks.causes.why_silent import calls_method, spins
 from grader.submission.constants import dotted, number
 from grader.submission.where import Where
 
@@ -62,7 +62,7 @@ def _publishes(loop: ast.While) -> bool:
 
 def _lets_others_run(loop: ast.While) -> bool:
     """Return whether the loop spins the node, or awaits something: then other callbacks run meanwhile."""
-    return calls_method(loop, "spin_once") or any(isinstance(node, ast.Await) for node in ast.walk(loop))
+    return spins(loop) or any(isinstance(node, ast.Await) for node in ast.walk(loop))
 
 
 def _degrees(evidence: Evidence) -> Cause | None:

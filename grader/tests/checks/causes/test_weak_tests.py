@@ -63,6 +63,7 @@ def test_an_assert_of_a_tuple_is_always_true(body: str, *, found: bool) -> None:
     [
         ("    assert False, 'to do'", True),
         ("    pytest.fail('to do')", True),
+        ("    bench.motor.fail()", False),
         (f"{SEARCH}    assert False, 'never zero'", False),
         ("    if not bench.heard:\n        pytest.skip('silent')\n    assert False", False),
         ("    if not bench.heard:\n        pytest.fail('silent')", False),
@@ -123,6 +124,20 @@ def test_a_loop_over_what_may_be_empty_is_found(above: str, listed: str, *, foun
     cause = in_a_loop(code(f"    for each in {listed}:\n        assert each", above))
     words = "If there is nothing to loop over, for example no message, the assert in this loop never runs."
     assert (cause is not None and cause.text == words) == found
+
+
+@pytest.mark.parametrize(
+    ("before", "found"),
+    [
+        ("if not bench.heard:\n        pytest.fail('silent')", False),
+        ("if not bench.heard:\n        raise AssertionError('silent')", False),
+        ("assert_heard(bench)", False),
+        ("print(bench.heard)", True),
+    ],
+)
+def test_what_fails_before_the_loop_proves_that_something_arrived(before: str, *, found: bool) -> None:
+    cause = in_a_loop(code(f"    {before}\n    for each in bench.heard:\n        assert each"))
+    assert (cause is not None) == found
 
 
 @pytest.mark.parametrize(

@@ -167,3 +167,13 @@ def test_commands_on_another_topic_are_told(topic: str, *, told: bool) -> None:
     graphs = (replace(graph(), endpoints=(end,)),)
     words = "The node publishes on /target1/cmd_vel, but turtle1 listens to /turtle1/cmd_vel."
     assert (words in cause([], graphs=graphs)) == told
+
+
+@pytest.mark.parametrize(
+    ("sends", "told"),
+    [("print(msg)", True), ("send = self.publisher.publish\n        send(msg)", False)],
+)
+def test_another_name_for_publish_counts_as_a_call(sends: str, *, told: bool) -> None:
+    code = submission({NODE_FILE: CATCHER.replace("self.publisher.publish(msg)", sends)})
+    text = why_not_caught(evidence(recording([]), code), []).text
+    assert (text == "publish is never called.") == told

@@ -32,6 +32,7 @@ SPEED = "linear_velocity is a speed, and it is negative when the turtle drives b
     [
         ("while self.pose.x < 8: self.publisher.publish(msg)  # look", LOOP),
         ("while self.pose.x < 8: self.publisher.publish(msg); rclpy.spin_once(self)", ""),
+        ("while self.pose.x < 8: self.publisher.publish(msg); spin_once(self)", ""),
         ("async def go():\n            while self.pose: self.publisher.publish(msg); await x\n        use(go)", ""),
         ("while self.ticks < 8: self.publisher.publish(msg)", ""),
         ("if self.pose.x < 8: self.publisher.publish(msg)", ""),

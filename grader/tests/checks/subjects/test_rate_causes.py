@@ -62,6 +62,12 @@ def test_a_timer_that_sends_nothing_does_not_set_the_rate(called: str, line: int
     assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:{line}")
 
 
+def test_a_timer_may_be_the_reason_if_nothing_calls_publish() -> None:
+    other = ("        self.publisher.publish(msg)", "        self.sender.send(msg)")
+    found = rate("one hertz", (TIMER, "self.create_timer(1.0, self.send)"), other)
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:10")
+
+
 @pytest.mark.parametrize(("called", "told"), [("report", False), ("send", True)])
 def test_only_a_timer_that_sends_explains_too_few_messages(called: str, *, told: bool) -> None:
     slow = node((TIMER, f"self.create_timer(4.0, self.{called})"), REPORTS)
