@@ -13,6 +13,7 @@ from grader.common.lazy import np
 from grader.common.words import shorten
 from grader.evidence.targets import is_there, place_at
 from grader.exercise.own_numbers import OwnNumbers
+from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -83,12 +84,29 @@ def _wrong_angle(evidence: Evidence) -> Cause | None:
             text = "math.atan2 takes the difference in y first, and then the difference in x."
             return Cause("atan2-swapped", text, call.where)
     converted = evidence.code.calls("degrees") + evidence.code.calls("rad2deg")
-    # A log message may contain an angle in degrees.
-    degrees = next((call for call in converted if not any(_contains(log, call) for log in _logs(evidence))), None)
+    degrees = next((call for call in converted if not _is_logged(evidence, call)), None)
     if degrees is None:
         return None
     text = "The heading theta and angular.z are in radians, but this line converts an angle to degrees."
     return Cause("angle-in-degrees", text, degrees.where)
+
+
+def _is_logged(evidence: Evidence, converted: Call) -> bool:
+    """Return whether only log messages use the angle in degrees, directly or through a variable."""
+    logs = _logs(evidence)
+    if any(_contains(log, converted) for log in logs):
+        return True
+    names = [
+        node.targets for node in converted.module.nodes if isinstance(node, ast.Assign) and node.value is converted.node
+    ]
+    name = dotted(names[0][0]) if names else None
+    read = [
+        node
+        for node in converted.module.nodes
+        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load) and dotted(node) == name
+    ]
+    logged = {id(each) for log in logs for each in ast.walk(log.node)}
+    return name is not None and bool(read) and all(id(node) in logged for node in read)
 
 
 def _logs(evidence: Evidence) -> list[Call]:
@@ -108,16 +126,22 @@ def _axes(node: ast.expr) -> set[str]:
 
 def _farthest(evidence: Evidence) -> Cause | None:
     """Return the cause if the node calls max with a key that has no minus sign, and never calls min, else None."""
-    chosen = [call for call in evidence.code.calls("max") if (key := call.argument(99, "key")) and not _negates(key)]
+    keys = [(call, call.argument(99, "key")) for call in evidence.code.calls("max")]
+    chosen = [call for call, key in keys if key is not None and not _negates(key, call)]
     if not chosen or evidence.code.calls("min"):
         return None
     text = "max with a key returns the target for which the key, such as the distance, is largest."
     return Cause("farthest-chosen", text, chosen[0].where)
 
 
-def _negates(key: ast.expr) -> bool:
-    """Return whether the key has a minus sign, so that max returns the target with the smallest distance."""
-    return any(isinstance(node, ast.USub) for node in ast.walk(key))
+def _negates(key: ast.expr, call: Call) -> bool:
+    """Return whether the key has a minus sign or a division, so that max returns the nearest target.
+
+    They may also be in a function of the module that the key names or calls.
+    """
+    names = {getattr(node, "attr", getattr(node, "id", "")) for node in ast.walk(key)}
+    functions = [node for node in call.module.nodes if isinstance(node, ast.FunctionDef) and node.name in names]
+    return any(isinstance(node, ast.USub | ast.Div) for part in (key, *functions) for node in ast.walk(part))
 
 
 def wrong_turn(evidence: Evidence) -> Cause | None:

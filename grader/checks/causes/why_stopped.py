@@ -6,24 +6,55 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.crash import ended_early
+from grader.checks.causes.waiting import functions_in_callbacks, inside
+from grader.checks.causes.why_rate import may_send
+from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call
 
 CANCELS = "cancel stops the timer, so the timer does not call its method again."
 
 
-def cancelled(evidence: Evidence) -> Where | None:
-    """Return the place where a node with timers calls a method named cancel, or None."""
-    if evidence.code.calls("create_timer") and evidence.code.calls("cancel"):
-        return evidence.place("cancel")
+def cancelled(evidence: Evidence, call: str) -> Where | None:
+    """Return the place where a callback cancels a timer that may call `call`, or None.
+
+    A timer that is reset later does not count.
+    """
+    timers = _named_timers(evidence)
+    reset = {_owner(each) for each in evidence.code.calls("reset")}
+    run = {id(node) for _, function in functions_in_callbacks(evidence.code.modules) for node in inside(function)}
+    for cancel in evidence.code.calls("cancel"):
+        timer = timers.get(_owner(cancel))
+        if timer is None or id(cancel.node) not in run or _owner(cancel) in reset:
+            continue
+        if may_send(timer, call) or not evidence.code.calls(call):
+            return cancel.where
     return None
+
+
+def _named_timers(evidence: Evidence) -> dict[str, Call]:
+    """Return the calls that create a timer, with the variables to which the timers are assigned."""
+    made = {id(each.node): each for each in evidence.code.calls("create_timer")}
+    return {
+        dotted(target) or "": made[id(node.value)]
+        for module in evidence.code.modules
+        for node in module.nodes
+        if isinstance(node, ast.Assign | ast.AnnAssign) and id(node.value) in made
+        for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+    }
+
+
+def _owner(call: Call) -> str:
+    """Return the variable whose method is called, such as "self.timer", or an empty string."""
+    return (dotted(call.node.func) or "").rpartition(".")[0]
 
 
 def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
     """Return the reason why `call` is no longer called (or an empty string), and a place in the code (or None)."""
-    stop = cancelled(evidence)
+    stop = cancelled(evidence, call)
     early = ended_early(evidence)
     if early or stop is not None:
         return early or CANCELS, stop

@@ -241,7 +241,7 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
         why = Cause("stops-and-goes", CHANGE if zeros_between(evidence) else NO_COMMAND)
     elif activity.end_s(evidence.recording) - commands[-1].t_s > LIVES_S:
         observed = f"The turtle drove {turns:.2f} turns; the last command arrived at {commands[-1].t_s:.1f} s."
-        why = Cause("stopped-early", NO_COMMAND, cancelled(evidence))
+        why = Cause("stopped-early", NO_COMMAND, cancelled(evidence, "publish"))
     else:
         speed = steady_command(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0

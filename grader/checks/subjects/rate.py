@@ -162,7 +162,7 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
         return failed(observed, expected, asleep)
     if amount == 1:
         cause = f"A timer calls a method repeatedly, so that {what.call} is called more than once."
-        stop = cancelled(evidence)
+        stop = cancelled(evidence, what.call)
         why = Cause("published-once" if what is COMMAND else "logged-once", CANCELS if stop else cause, stop)
         return failed(observed, expected, why.at(where))
     return failed(

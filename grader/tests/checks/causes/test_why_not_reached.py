@@ -62,7 +62,12 @@ DEGREES = NODE.replace("math.atan2(dy, dx)", "math.degrees(math.atan2(dy, dx))")
 LOGGED = NODE.replace(
     "        self.publisher", "        self.get_logger().info(f'{math.degrees(1.0)}')\n        self.publisher"
 )
-MOST = NODE.replace("min(", "max(")
+NAMED = NODE.replace(
+    "        self.publisher",
+    "        deg = math.degrees(1.0)\n        self.get_logger().info(f'{deg}')\n"
+    "        use({angle})\n        self.publisher",
+)
+MOST = NODE.replace("min(", "max(") + "\n    def distance(self, name):\n        away = self.away(name)\n"
 
 
 @pytest.mark.parametrize(
@@ -91,6 +96,13 @@ MOST = NODE.replace("min(", "max(")
         ),
         ("angle-in-degrees", cause(DEGREES), cause(LOGGED)),
         ("farthest-chosen", cause(MOST), cause(MOST.replace("=self.distance", "=lambda name: -self.distance(name)"))),
+        ("angle-in-degrees", cause(NAMED.replace("{angle}", "angle + deg")), cause(NAMED)),
+        (
+            "farthest-chosen",
+            cause(MOST),
+            cause(MOST.replace("=self.distance", "=lambda name: 1 / self.distance(name)")),
+        ),
+        ("farthest-chosen", cause(MOST + "        return away"), cause(MOST + "        return -away")),
         ("farthest-chosen my_robot_controller/draw_circle.py:8: ", cause(MOST), cause()),
         ("max with a key returns the target for which", cause(MOST), cause(NODE.replace("4.0 *", "max(4.0, 5.0) *"))),
         ("turns-away my_robot_controller/draw_circle.py:11: ", cause(commands=RIGHT_TURN), cause(commands=LEFT_TURN)),
