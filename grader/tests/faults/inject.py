@@ -40,8 +40,7 @@ if seen:
     faults = {name: value for name, value in os.environ.items() if name.startswith(("FAULT", "LD_PRELOAD"))}
 
     def interpreter(*arguments, env, **options):
-        if "conductor" not in arguments:
-            return clean(*arguments, env=env, **options)
+        # In a learner's check, conductors are forks of the server for nodes. A node never calls what arms the fault.
         return clean(*arguments, env={**env, **faults, "PYTHONPATH": seen + os.pathsep + env["PYTHONPATH"]}, **options)
 
     fork_client.interpreter = interpreter
