@@ -104,8 +104,17 @@ def swallowed(code: TestCode) -> Cause | None:
 
 
 def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) -> bool:
-    """Return whether an assert outside the try statement uses a name that the except clause assigns or appends to."""
-    kept = {each.id for each in ast.walk(handler) if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
+    """Return whether code outside the try statement makes the test fail.
+
+    It may be an assert that uses a name to which the try statement assigns, or to which the except clause appends, or
+    the else block of a loop that repeats the try statement.
+    """
+    loops = [node for node in module.nodes if isinstance(node, ast.For | ast.While) and tried in ast.walk(node)]
+    if any(_asserts(each) for loop in loops for each in loop.orelse):
+        return True
+    parts = [handler, *tried.body, *tried.orelse]
+    stored = (each for part in parts for each in ast.walk(part) if isinstance(getattr(each, "ctx", None), ast.Store))
+    kept = {_last(each) for each in stored if isinstance(each, ast.Name | ast.Attribute)}
     calls = (each.func for each in ast.walk(handler) if isinstance(each, ast.Call))
     kept |= {_last(each.value) for each in calls if isinstance(each, ast.Attribute) and each.attr in ("append", "add")}
     inside = set(map(id, ast.walk(tried)))

@@ -135,7 +135,9 @@ def not_there(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None
 
 
 def returns_before(evidence: Evidence, call: str) -> Cause | None:
-    """Return the cause if a function returns unconditionally before it calls `call`, else None."""
+    """Return the cause if the only function that calls `call` returns unconditionally before the call, else None."""
+    if sum(calls_method(method, call) for _, method in methods_of(evidence)) > 1:
+        return None
     for module, method in methods_of(evidence):
         returns = [each.lineno for each in method.body if isinstance(each, ast.Return)]
         calls = [each.lineno for each in ast.walk(method) if isinstance(each, ast.Call) and calls_method(each, call)]

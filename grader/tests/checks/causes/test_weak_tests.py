@@ -100,6 +100,9 @@ def test_a_test_that_is_marked_as_skipped_or_failing_does_not_count(mark: str, *
         ("except AssertionError:\n        wrong = True", "    assert not wrong", False),
         ("except AssertionError:\n        wrong.append(1)", "    assert not wrong", False),
         ("except AssertionError:\n        wrong = True", "    print(wrong)", True),
+        ("except AssertionError:\n        bench.wrong = True", "    assert not bench.wrong", False),
+        ("except AssertionError:\n        bench.wrong = True", "    assert bench.heard", True),
+        ("except AssertionError:\n        pass\n    else:\n        right = True", "    assert right", False),
     ],
 )
 def test_an_except_that_hides_a_failure_is_found(handler: str, after: str, *, found: bool) -> None:
@@ -107,6 +110,13 @@ def test_an_except_that_hides_a_failure_is_found(handler: str, after: str, *, fo
     assert (cause is not None) == found
     words = "This except clause catches the AssertionError, so pytest does not notice the failure."
     assert cause is None or (cause.text, cause.where and cause.where.line) == (words, 4)
+
+
+@pytest.mark.parametrize(("end", "found"), [("pytest.fail('silent')", False), ("print('silent')", True)])
+def test_a_loop_that_tries_again_may_fail_in_its_else_block(end: str, *, found: bool) -> None:
+    again = "        try:\n            assert bench.heard\n            break\n        except AssertionError:\n"
+    body = f"    for _ in range(9):\n{again}            bench.spin()\n    else:\n        {end}"
+    assert (swallowed(code(body)) is not None) == found
 
 
 @pytest.mark.parametrize(

@@ -284,6 +284,11 @@ def test_a_return_before_the_message_is_found(sent: str, *, found: bool) -> None
     assert cause is None or cause.text == "send returns on line 8, before it calls publish."
 
 
+def test_a_return_in_one_of_two_methods_that_send_is_not_blamed() -> None:
+    other = "\n\nclass Other(Node):\n    def stop(self):\n        self.publisher.publish(1)\n"
+    assert returns_before(given(NODE.format(made=TIMER, sent="return") + other), "publish") is None
+
+
 @pytest.mark.parametrize("body", ["self.send()", "self.send() or self.send", "(self.send, None)"])
 def test_a_lambda_that_calls_something_is_not_blamed(body: str) -> None:
     assert silence(NODE.format(made=f"self.create_timer(0.5, lambda: {body})", sent="pass")) is None
