@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.why_blocked import ANSWERS, why_blocked
 from grader.checks.causes.why_not_reached import why_not_reached, wrong_turn
-from grader.checks.causes.why_silent import why_nothing
+from grader.checks.causes.why_silent import calls_method, why_nothing
 from grader.checks.causes.why_steering import theta_forgotten
 from grader.checks.causes.why_unasked import why_unasked
 from grader.common.lazy import np
@@ -43,7 +43,7 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
         text = f"{ended[0].executable} exited before all targets were caught, so the trial ended."
         other = next((spec for spec in evidence.exercise.beside(evidence.trial.id)), evidence.trial)
         return Cause("other-node-ended", text, evidence.from_trial(other.id).place("spin"))
-    waiting = _no_target(evidence) or why_blocked(evidence)
+    waiting = _no_target(evidence) or (None if _runs_until_end(evidence) else why_blocked(evidence))
     if waiting is not None:
         return waiting
     late = loop_variable(evidence)
@@ -69,6 +69,14 @@ def why_not_caught(evidence: Evidence, left: list[Track]) -> Cause:
             return known
         text += f" The turtle came within {near_m:.1f} m of {shorten(name)}." if np.isfinite(near_m) else ""
     return Cause("too-slow", text, evidence.place("publish"))
+
+
+def _runs_until_end(evidence: Evidence) -> bool:
+    """Return whether commands arrived until the end, but not from a loop, so no callback waits forever."""
+    until = activity.end_s(evidence.recording) - STILL_S
+    loops = [node for module in evidence.code.modules for node in module.nodes if isinstance(node, ast.While)]
+    in_loop = any(calls_method(loop, "publish") for loop in loops)
+    return not in_loop and any(command.t_s > until for command in evidence.commands)
 
 
 def _where_sent(evidence: Evidence) -> str:

@@ -177,3 +177,18 @@ def test_another_name_for_publish_counts_as_a_call(sends: str, *, told: bool) ->
     code = submission({NODE_FILE: CATCHER.replace("self.publisher.publish(msg)", sends)})
     text = why_not_caught(evidence(recording([]), code), []).text
     assert (text == "publish is never called.") == told
+
+
+WAITS = "while self.pose is None: pass"
+PUBLISHES = "while not self.future.done(): self.publisher.publish(msg)"
+
+
+@pytest.mark.parametrize(
+    ("loop", "commands", "told"),
+    [(WAITS, AHEAD[:14], True), (WAITS, [], True), (WAITS, AHEAD, False), (PUBLISHES, AHEAD, True)],
+)
+def test_a_node_that_sends_until_the_end_is_not_blocked(loop: str, commands: list[Timed], *, told: bool) -> None:
+    code = submission({NODE_FILE: CATCHER.replace("        msg = Twist()", f"        msg = Twist()\n        {loop}")})
+    far = Track("far", ((0.0, 9.0, 5.544445, 0.0),), None)
+    found = why_not_caught(evidence(recording(commands, tracks=(far,)), code), [far])
+    assert (found.diagnosis in ("loops-in-callback", "waits-in-callback")) == told
