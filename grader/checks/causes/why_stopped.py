@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.crash import ended_early
 from grader.checks.causes.waiting import functions_in_callbacks, inside
 from grader.checks.causes.why_rate import may_send
 from grader.submission.constants import dotted
@@ -16,6 +15,8 @@ if TYPE_CHECKING:
     from grader.submission.code import Call
 
 CANCELS = "cancel stops the timer, so the timer does not call its method again."
+EXIT_S = 1.0
+"""The maximum time (s) from the call that ends a program to the exit of the program."""
 
 
 def cancelled(evidence: Evidence, call: str) -> Where | None:
@@ -52,12 +53,22 @@ def _owner(call: Call) -> str:
     return (dotted(call.node.func) or "").rpartition(".")[0]
 
 
+def stopped_by_exit(evidence: Evidence, last_s: float, period_s: float) -> bool:
+    """Return whether the node exited before the end of the scenario, and before it missed a message.
+
+    The last message arrived at `last_s` (s), and the next one would have been due after `period_s` (s). If the node
+    exited much later, it had stopped sending for another reason. A node that used up a resource may have been busy
+    since its last message.
+    """
+    end = evidence.recording.end
+    return end.out_of is not None or (end.by == "itself" and end.t_s - last_s <= period_s + EXIT_S)
+
+
 def why_stopped(evidence: Evidence, call: str) -> tuple[str, Where | None]:
-    """Return the reason why `call` is no longer called (or an empty string), and a place in the code (or None)."""
+    """Return the reason why a running node no longer calls `call` (or an empty string), and a place (or None)."""
     stop = cancelled(evidence, call)
-    early = ended_early(evidence)
-    if early or stop is not None:
-        return early or CANCELS, stop
+    if stop is not None:
+        return CANCELS, stop
     condition = _condition(evidence, call)
     if condition is None:
         return "", None

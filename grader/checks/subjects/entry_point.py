@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -12,7 +13,8 @@ from grader.checks.edit import at
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.building import INSTALLED_MODULE, is_linked
-from grader.common.words import nearest, shorten
+from grader.common.words import a_list, nearest, shorten
+from grader.errors import TooLargeError
 from grader.submission.code import import_path, module_file, read_module
 from grader.submission.constants import dotted
 from grader.submission.package_xml import line_of
@@ -21,11 +23,14 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
+    from grader.checks.edit import Edit
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Module
 
 OTHER_ENDINGS = ("", ".txt", ".py.txt", ".PY", ".python")
 """The endings that the name of a Python file may have by mistake, instead of .py."""
+INIT = "/__init__.py"
+"""The end of the path of the file that Python runs if a module name is the name of a folder."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value is not callable."""
 
@@ -160,6 +165,11 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
 
 def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     executable = evidence.trial.executable
+    inside = indented(module, name)
+    beside = _files_beside(evidence, module)
+    others = [each.file for each in beside if any(_bindings(each, name))]
+    if inside is None and (others or (beside and not module.nodes[1:])):
+        return _only_the_folder(evidence, module, name, others)
     if not module.nodes[1:]:
         expected = f"The file contains the function {shorten(name)}, which the entry point names."
         where = Where(module.file)
@@ -173,7 +183,6 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     if at_top is not None and not any(node.name == name for node in functions):
         cause = "The program's code is at the top level of the file. Move the code into a function with that name."
         return failed(observed, expected, Cause("top-level-code", cause, Where(module.file, at_top.lineno)))
-    inside = indented(module, name)
     if inside is not None:
         return failed(observed, expected, inside)
     guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
@@ -184,6 +193,36 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     right = guess or (top[0] if len(top) == 1 else None)
     fix = at(line(evidence), f":{name}", f":{right}") if right is not None else ()
     return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)).fixed_by(fix))
+
+
+def _files_beside(evidence: Evidence, module: Module) -> list[Module]:
+    """Return the other modules in the folder of an __init__.py. The list is empty if `module` is another file."""
+    folder, init, _ = module.file.rpartition(INIT)
+    sources = evidence.submission.files if init else {}
+    found = []
+    for file in sources:
+        if file.endswith(".py") and file.rpartition("/")[0] == folder and file != module.file:
+            with suppress(TooLargeError):
+                found.append(read_module(file, sources[file]))
+    return found
+
+
+def _only_the_folder(evidence: Evidence, module: Module, name: str, others: list[str]) -> Finding:
+    """Return a failed finding about an entry point that names a folder. `others` are its files with the function."""
+    executable, folder = evidence.trial.executable, module.file.removesuffix(INIT)
+    package = import_path(folder).replace("/", ".")
+    observed = f"The entry point {executable} names the folder {shorten(package)}, but no file in it."
+    others = [each for each in others if each == f"{folder}/{executable}.py"] or sorted(others)
+    fix: tuple[Edit, ...] = ()
+    cause = f"Python looks for {shorten(name)} in __init__.py. To name another file, write FOLDER.FILE."
+    if others:
+        files = a_list([shorten(each) for each in others], most=3)
+        cause = f"Python looks for {shorten(name)} in __init__.py, but it is in {files}."
+    if len(others) == 1:
+        right = f"{package}.{others[0].rpartition('/')[2].removesuffix('.py')}"
+        cause += f" Write {shorten(right)}."
+        fix = at(line(evidence), f"{package}:", f"{right}:")
+    return failed(observed, f"{FORM}.", Cause("entry-point-function", cause, line(evidence)).fixed_by(fix))
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:

@@ -21,7 +21,7 @@ from grader.checks.causes.why_path import (
     why_replaced,
     zeros_between,
 )
-from grader.checks.causes.why_stopped import cancelled
+from grader.checks.causes.why_stopped import cancelled, stopped_by_exit
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Requested
@@ -226,12 +226,13 @@ def _not_round(
 
 def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expected: str, *, near_edge: bool) -> Finding:
     observed = f"The turtle drove {turns:.2f} turns."
-    crash, early = crash_of(evidence), ended_early(evidence)
-    if crash is not None:
-        return crash_finding(evidence, crash, observed, expected)
-    if early:
-        return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
     commands = all_commands(evidence)
+    crash, early = crash_of(evidence), ended_early(evidence)
+    last_s = commands[-1].t_s if commands else evidence.recording.end.t_s
+    if stopped_by_exit(evidence, last_s, LIVES_S):
+        if crash is not None:
+            return crash_finding(evidence, crash, observed, expected)
+        return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
     if commands[0].t_s > LATE_S:
         observed = f"The turtle drove {turns:.2f} turns; the first command arrived at {commands[0].t_s:.1f} s."
         text = "A turtle that starts late has less time for the circle."

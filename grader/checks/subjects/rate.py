@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.crash import crash_of, end_observed, ended_early
+from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_period import why_mean, why_slow_timer
@@ -17,7 +17,7 @@ from grader.checks.causes.why_rate import (
     why_rate_in_callback,
     why_timers_grow,
 )
-from grader.checks.causes.why_stopped import CANCELS, cancelled, why_stopped
+from grader.checks.causes.why_stopped import CANCELS, cancelled, stopped_by_exit, why_stopped
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Interval, Requested
@@ -131,7 +131,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
             near_edge=near,
         )
     if not measured.rest_s <= params.max_interval_s:
-        return _stopped(evidence, what, measured, expected, near_edge=near)
+        return _stopped(evidence, what, measured, params, expected, near_edge=near)
     return passed(f"{what.plural} arrive every {period:.2f} s ({shown(params.rate_hz)} Hz).", near_edge=near)
 
 
@@ -151,25 +151,26 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
     if crash is not None:
         return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", expected)
     where = evidence.place(what.call)
+    ended = None
     if evidence.recording.end.by == "itself":
-        why = why_ended(evidence)
-        return failed(f"{observed} {end_observed(evidence)}", expected, why)
+        ended = failed(f"{observed} {end_observed(evidence)}", expected, why_ended(evidence))
+    if ended is not None and (amount == 0 or stopped_by_exit(evidence, measured.arrivals[-1], 1.0 / params.rate_hz)):
+        return ended
     slow = why_slow_timer(evidence, what.call, params.rate_hz, amount)
     if slow is not None:
         return failed(observed, expected, slow)
     asleep = why_rate_in_callback(evidence)
     if asleep is not None:
         return failed(observed, expected, asleep)
+    if ended is not None and not (amount == 1 and cancelled(evidence, what.call)):
+        return ended
     if amount == 1:
         cause = f"A timer calls a method repeatedly, so that {what.call} is called more than once."
         stop = cancelled(evidence, what.call)
         why = Cause("published-once" if what is COMMAND else "logged-once", CANCELS if stop else cause, stop)
         return failed(observed, expected, why.at(where))
-    return failed(
-        observed,
-        expected,
-        Cause("too-few-commands" if what is COMMAND else "too-few-log-lines", ended_early(evidence), where),
-    )
+    why = Cause("too-few-commands" if what is COMMAND else "too-few-log-lines", where=where)
+    return failed(observed, expected, why)
 
 
 def _wrong_mean(
@@ -199,16 +200,22 @@ def _uneven_cause(evidence: Evidence, what: Subject) -> str:
     return f"Does the method that calls {what.call} sleep for longer than the period?" if code.calls("sleep") else ""
 
 
-def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
+def _stopped(
+    evidence: Evidence, what: Subject, measured: Measured, params: Rate, expected: str, *, near_edge: bool
+) -> Finding:
     observed = f"The last {what.noun} arrived at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
     wanted = f"{expected[:-1]}, until Ctrl-C."
-    crash = crash_of(evidence)
+    cause, where = why_stopped(evidence, what.call)
+    exited = stopped_by_exit(evidence, measured.arrivals[-1], 1.0 / params.rate_hz)
+    crash = crash_of(evidence) if exited or not cause else None
     if crash is not None:
         return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", wanted)
-    cause, stop = why_stopped(evidence, what.call)
-    return failed(
-        observed, wanted, Cause("stopped-early", cause, stop or evidence.place(what.call)), near_edge=near_edge
-    )
+    if exited:
+        observed = f"{observed} {end_observed(evidence)}"
+        why = why_ended(evidence)
+        cause, where = why.text, why.where
+    why = Cause("stopped-early", cause, where or evidence.place(what.call))
+    return failed(observed, wanted, why, near_edge=near_edge)
 
 
 def requested_rate(_: Evidence, params: Rate) -> Requested:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.outcome import Status
-from grader.tests.checks.changed import NOTHING, POINT, of, setup_py
+from grader.tests.checks.changed import INIT, NOTHING, POINT, of, setup_py
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE
 from grader.tests.checks.told import told
 
@@ -125,6 +125,49 @@ def test_a_function_inside_of_the_class_is_not_found() -> None:
 @pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])
 def test_a_file_that_is_too_much_to_parse_is_left_to_the_trial(text: bytes) -> None:
     assert of("entry-point", {NODE_FILE: text}).status in (Status.PASSED, Status.FAILED)
+
+
+FOLDER = leads_to("my_robot_controller:main")
+
+
+@pytest.mark.parametrize(
+    ("files", "cause"),
+    [
+        ({}, "it is in my_robot_controller/draw_circle.py. Write my_robot_controller.draw_circle."),
+        ({INIT: '"""Nodes."""\n'}, "Write my_robot_controller.draw_circle."),
+        ({INIT: "def start():\n    pass\n"}, "Write my_robot_controller.draw_circle."),
+        ({"my_robot_controller/first.py": NODE}, "Write my_robot_controller.draw_circle."),
+        ({"my_robot_controller/long.py": "a" * 500_000}, "Write my_robot_controller.draw_circle."),
+        ({NODE_FILE: None, "my_robot_controller/first.py": NODE}, "Write my_robot_controller.first."),
+        (
+            {NODE_FILE: None, "my_robot_controller/first.py": NODE, "my_robot_controller/second.py": NODE},
+            "it is in my_robot_controller/first.py and my_robot_controller/second.py.",
+        ),
+        ({NODE_FILE: "x = 1\n"}, "looks for main in __init__.py. To name another file, write FOLDER.FILE."),
+    ],
+)
+def test_an_entry_point_that_names_only_the_folder_is_told_the_file_with_the_function(files: Files, cause: str) -> None:
+    found = of("entry-point", {INIT: "", **setup_py(POINT, POINT.replace(".draw_circle", "")), **files}, FOLDER)
+    assert found.observed == "The entry point draw_circle names the folder my_robot_controller, but no file in it."
+    assert (found.diagnosis, str(found.where)) == ("entry-point-function", "setup.py:14")
+    assert found.cause.endswith(cause)
+    assert bool(found.fix) == ("Write" in cause)
+
+
+@pytest.mark.parametrize(
+    ("files", "diagnosis"),
+    [
+        ({INIT: NODE}, None),
+        ({INIT: "from .draw_circle import main\n"}, None),
+        ({INIT: "", NODE_FILE: None}, "empty-file"),
+        ({INIT: "class A:\n    def main(self):\n        pass\n"}, "main-in-class"),
+        ({INIT: "def start():\n    pass\n", NODE_FILE: "x = 1\n"}, "entry-point-function"),
+    ],
+)
+def test_an_entry_point_that_names_the_folder_leads_to_init_py(files: Files, diagnosis: str | None) -> None:
+    found = of("entry-point", files, FOLDER)
+    assert found.diagnosis == diagnosis
+    assert "names the folder" not in found.observed
 
 
 EMPTY: Files = {NODE_FILE: "\n"}
