@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import pytest
 
 
-def test_what_is_shared_is_made_once(tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_a_shared_folder_is_created_only_once(tmp_path_factory: pytest.TempPathFactory) -> None:
     made: list[Path] = []
 
     def make(folder: Path) -> list[int]:

@@ -33,7 +33,7 @@ def test_a_word_that_means_a_command_names_it(typed: str, meant: str) -> None:
     assert error(typed, "03") == f"There is no command {typed}. Type: {meant}"
 
 
-def test_what_the_words_mean_exists_and_the_words_do_not() -> None:
+def test_the_suggested_commands_exist_and_the_other_words_are_not_commands() -> None:
     known = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     for command, words in other_words._MEANT.items():
         assert command == "make demo" or re.match(r"grader (\w+|--help)", command)[1] in {*known, "--help"}  # type: ignore[index]

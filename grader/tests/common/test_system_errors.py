@@ -41,7 +41,7 @@ def test_a_failed_system_call_is_one_sentence_with_what_to_do(error: BaseExcepti
 
 
 @pytest.mark.parametrize("error", [ValueError("x"), RuntimeError("x"), KeyError("x"), RecursionError()])
-def test_what_our_own_code_raises_is_no_refusal(error: BaseException) -> None:
+def test_an_error_of_our_own_code_is_not_a_refusal(error: BaseException) -> None:
     assert refusal(error) is None
 
 

@@ -94,7 +94,7 @@ def test_paragraphs_are_wrapped_and_indented_lines_stay() -> None:
         "sudo apt-get install -y cmake",
     ],
 )
-def test_what_is_copied_is_not_broken(command: str) -> None:
+def test_a_command_is_not_wrapped(command: str) -> None:
     shown = wrapped(f"This is what you can type now: {command}, and then go on.", 20)
     assert f"{command}," in shown.split("\n")
     assert wrapped("the source of a node", 10) == "the source\nof a node"

@@ -121,7 +121,7 @@ def test_the_first_trial_that_fails_undisturbed_counts() -> None:
     assert trials.alone == [False, True]
 
 
-def test_where_all_fail_the_one_that_was_disturbed_least_counts() -> None:
+def test_if_all_trials_fail_the_least_disturbed_one_counts() -> None:
     little, more = crowded(WRONG, (1.0, 1.1)), crowded(WRONG, (1.0, 1.3))
     trials = Trials([more, little, more])
     found = graded(trials)

@@ -55,13 +55,13 @@ def go_on(process: subprocess.Popen[str]) -> None:
     process.stdin.flush()
 
 
-def test_two_share_the_machine(tmp_path: Path) -> None:
+def test_two_graders_share_the_machine(tmp_path: Path) -> None:
     with Turns(tmp_path).shared(), other(tmp_path) as second:
         assert hears(second) == "shared"
         go_on(second)
 
 
-def test_who_wants_it_alone_waits_for_the_others_and_later_ones_wait_for_it(tmp_path: Path) -> None:
+def test_an_exclusive_turn_waits_for_earlier_graders_and_later_graders_wait_for_it(tmp_path: Path) -> None:
     with ExitStack() as stack:
         with Turns(tmp_path).shared():
             alone = stack.enter_context(other(tmp_path, "alone"))
@@ -91,7 +91,7 @@ def await_turnstile(folder: Path) -> None:
             fcntl.flock(turnstile, fcntl.LOCK_UN)
 
 
-def test_two_that_both_want_it_alone_get_it_one_after_the_other(tmp_path: Path) -> None:
+def test_two_exclusive_turns_follow_each_other(tmp_path: Path) -> None:
     with other(tmp_path, "alone") as one, other(tmp_path, "alone") as two:
         for process in (one, two):
             go_on(process)
@@ -125,7 +125,7 @@ def test_a_machine_that_does_not_become_free_is_used_all_the_same(
         go_on(busy)
 
 
-def test_where_nothing_can_be_written_nobody_waits(tmp_path: Path) -> None:
+def test_a_grader_does_not_wait_if_the_lock_files_cannot_be_created(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     mine = Turns(tmp_path / "file" / "below")
     with mine.shared(), mine.alone():

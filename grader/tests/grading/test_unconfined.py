@@ -62,7 +62,7 @@ def test_the_verdict_is_that_of_a_sandbox_and_the_report_says_so(
     assert [report["confined"] for report in reports] == [False, True]
 
 
-def test_who_wants_a_sandbox_is_refused_without_one(tmp_path: Path, without: dict[str, str]) -> None:
+def test_check_with_the_option_sandbox_fails_without_a_sandbox(tmp_path: Path, without: dict[str, str]) -> None:
     copy_solution(STEP, tmp_path / "my_robot_controller")
     done = grader(without, "check", tmp_path / "my_robot_controller", "--exercise", STEP, "--sandbox")
     assert (done.returncode, done.stdout) == (3, "")

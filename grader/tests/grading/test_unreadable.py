@@ -60,7 +60,7 @@ def reported(of: Graded) -> dict[str, tuple[Status, str | None]]:
 
 
 @pytest.mark.parametrize("error", [RecursionError("too deep"), ValueError("odd"), KeyError("x")])
-def test_what_the_build_has_made_and_nobody_can_read_has_failed(error: Exception) -> None:
+def test_an_unreadable_result_of_the_build_fails_the_build(error: Exception) -> None:
     found = graded(build=breaks(error))
     assert reported(found)["build"] == (Status.FAILED, "unreadable")
     assert found.report.with_status(Status.ERROR) == ()
@@ -68,7 +68,7 @@ def test_what_the_build_has_made_and_nobody_can_read_has_failed(error: Exception
 
 
 @pytest.mark.parametrize("error", [RecursionError("too deep"), ValueError("odd")])
-def test_what_the_trial_has_observed_and_nobody_can_read_has_failed(error: Exception) -> None:
+def test_an_unreadable_result_of_the_trial_fails_the_start(error: Exception) -> None:
     found = graded(trial=broken_trial(error))
     assert reported(found)["build"] == (Status.PASSED, None)
     assert reported(found)["start"] == (Status.FAILED, "unreadable")
@@ -114,7 +114,7 @@ def ends(*_: object) -> NoReturn:
     ("how", "why"), [(spins, "too large to be read"), (ends, "the reading process was stopped by SIG")]
 )
 @pytest.mark.parametrize("when", ["early", "after the build"])
-def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
+def test_a_submission_that_crashes_its_reader_fails_and_is_not_read_again(
     monkeypatch: pytest.MonkeyPatch, when: str, how: Callable[..., NoReturn], why: str
 ) -> None:
     monkeypatch.setattr(reader, "CPU_S", 1)

@@ -43,7 +43,7 @@ def changes(tmp_path: Path, source: str) -> list[tuple[int, str]]:
     return [(mutant.line, mutant.change) for mutant in mutants_of(tmp_path / "a.py")]
 
 
-def test_what_decides_is_changed_and_words_and_declarations_are_not(tmp_path: Path) -> None:
+def test_mutants_change_conditions_but_not_declarations_or_words(tmp_path: Path) -> None:
     found = changes(tmp_path, SOURCE)
     assert sorted({line for line, _ in found}) == [6, 12, 13, 14]
     assert (12, "> LIMIT -> >= LIMIT") in found
@@ -65,7 +65,7 @@ def check(value):
 """
 
 
-def test_ids_are_changed_wherever_they_stand_and_what_is_said_nowhere(tmp_path: Path) -> None:
+def test_mutants_change_ids_but_not_sentences(tmp_path: Path) -> None:
     found = changes(tmp_path, CHOICES)
     assert sorted({line for line, _ in found}) == [5, 6, 7, 8, 9]
     assert [line for line, change in found if change == '"no-slash" -> "another"'] == [5, 6]
@@ -136,7 +136,7 @@ def test_of_those_that_see_a_file_alike_three_are_requested(tmp_path: Path) -> N
     assert judging.requested(replace(mutant, at_import=True), lines, 3) == ["a", "b", "c", "d", "e", "f", "g"]
 
 
-def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:
+def test_a_mutant_that_no_case_runs_survives(recorded: list[Recorded]) -> None:
     found = noticed(recorded, ANSWERS, '"no-answers" ->')
     assert not any(found.values()), found
 

@@ -64,7 +64,7 @@ def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was
         ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "RANGE=OFF, so nodes do not find each other"),
     ],
 )
-def test_who_hears_a_node_is_reported(env: dict[str, str], reported: str) -> None:
+def test_the_shell_reports_from_where_a_node_can_be_reached(env: dict[str, str], reported: str) -> None:
     assert reported in installation.who_hears(env)
 
 
@@ -168,7 +168,7 @@ def test_the_completion_of_a_sourced_ros_2_is_left_alone() -> None:
     assert "_python_argcomplete rqt_graph" in sourced(code, "complete -p rqt_graph")
 
 
-def test_where_a_ros_2_is_sourced_ours_gets_the_first_look_at_the_options_of_rqt_graph(tmp_path: Path) -> None:
+def test_with_a_sourced_ros_2_our_rqt_graph_reads_the_options_first(tmp_path: Path) -> None:
     (tmp_path / "rqt_graph").write_text("#!/bin/sh\necho real\n")
     (tmp_path / "rqt_graph").chmod(0o755)
     for of_a_sourced_one, shown in [(False, "real\n"), (True, "usage: rqt_graph ")]:

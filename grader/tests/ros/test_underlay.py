@@ -100,7 +100,7 @@ def test_a_build_on_another_disk_is_copied(tmp_path: Path, monkeypatch: pytest.M
 
 
 @of_a_sourced_ros
-def test_it_is_found_whatever_name_this_python_was_started_with() -> None:
+def test_ros_2_is_found_with_each_name_of_the_interpreter() -> None:
     code = "from grader.ros.installation import find_ros; print(find_ros().python)"
     names = [str(Path(sys.executable).with_name(name)) for name in ("python", "python3")]
     said = {subprocess.check_output([name, "-I", "-c", code], text=True) for name in names}
@@ -108,7 +108,7 @@ def test_it_is_found_whatever_name_this_python_was_started_with() -> None:
 
 
 @pytest.mark.exhaustive
-def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_path: Path) -> None:
+def test_two_processes_build_the_underlay_only_once(ros: installation.Ros, tmp_path: Path) -> None:
     """The current folder contains false modules and programs with familiar names, which the build must not use."""
     traps = Traps(tmp_path / "current", tmp_path / "touched")
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"

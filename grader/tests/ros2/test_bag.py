@@ -204,7 +204,9 @@ def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_reported(qui
         ("ros2 bag reindex there", "No .mcap or .db3 file in 'there'", 1),
     ],
 )
-def test_what_cannot_be_done_is_one_sentence(quiet: World, command: str, text: str, code: int) -> None:
+def test_a_bag_command_that_fails_prints_an_error_without_a_traceback(
+    quiet: World, command: str, text: str, code: int
+) -> None:
     quiet.home.joinpath("there").mkdir()
     quiet.home.joinpath("broken").mkdir()
     quiet.home.joinpath("broken/metadata.yaml").write_text(json.dumps({"rosbag2_bagfile_information": []}))

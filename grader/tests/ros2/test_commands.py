@@ -192,7 +192,7 @@ def test_a_verb_hears_by_loopback_and_nothing_else(still: World) -> None:
     running.stop()
 
 
-def test_whoever_is_stopped_leaves_the_graph(still: World) -> None:
+def test_a_publisher_that_is_stopped_by_a_signal_leaves_the_graph(still: World) -> None:
     for number in (signal.SIGTERM, signal.SIGHUP):
         still.start("ros2 topic pub /left std_msgs/msg/String", "publishing #1").stop(number)
         assert "/left" not in still.run("ros2 topic list").stdout

@@ -15,7 +15,7 @@ def said(lines: list[str]) -> list[str]:
     return [f"{match[1]} {match[2]}" for line in lines if (match := LINE.fullmatch(line))]
 
 
-def test_what_turtlesim_says(tmp_path: Path) -> None:
+def test_turtlesim_logs_the_same_lines_as_the_real_one(tmp_path: Path) -> None:
     expected = said((Path(__file__).parents[1] / "golden/ros2/node-turtlesim_node.stderr.txt").read_text().splitlines())
     # The real program also prints a line of rclcpp's signal handler. Our program does not use rclcpp.
     assert expected.pop() == "INFO [rclcpp]: signal_handler(signum=2)"

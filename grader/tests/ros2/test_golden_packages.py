@@ -46,7 +46,7 @@ def tree(folder: Path) -> set[str]:
     return lines
 
 
-def test_what_is_in_new_packages(src: Path) -> None:
+def test_new_packages_contain_the_same_files_as_the_real_ones(src: Path) -> None:
     recorded = (Path(__file__).parents[1] / "golden/ros2/pkg_create_tree_and_files.txt").read_text()
     parts = re.split(r"^##### (.*)\n", recorded, flags=re.MULTILINE)[1:]
     expected = dict(zip(parts[::2], parts[1::2], strict=True))

@@ -195,7 +195,7 @@ def test_a_package_with_an_odd_name_is_made_and_warned_of(name: str, still: Worl
         ),
     ],
 )
-def test_who_waits_in_vain_says_for_what_and_ends_on_ctrl_c(command: str, hint: str, still: World) -> None:
+def test_a_waiting_command_prints_a_hint_and_ends_on_ctrl_c(command: str, hint: str, still: World) -> None:
     waiting = still.start(command, hint)
     assert waiting.stop() == 2
     assert "Traceback" not in "\n".join(waiting.lines)

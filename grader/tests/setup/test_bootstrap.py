@@ -165,7 +165,7 @@ def test_of_two_pythons_the_one_that_can_import_what_a_sourced_ros_needs_is_take
     assert SYSTEMS.path in course.commands[0]
 
 
-def test_where_no_python_can_it_is_reported_and_nothing_is_done(
+def test_the_set_up_stops_if_no_python_can_import_the_modules_of_ros_2(
     course: Course, capsys: pytest.CaptureFixture[str]
 ) -> None:
     course.python = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("em",))

@@ -108,7 +108,7 @@ def test_types_of_a_later_python_are_noticed(line: str) -> None:
     assert too_new(ast.parse(line)) != []
 
 
-def test_nothing_else_of_ours_runs_first() -> None:
+def test_the_bootstrap_imports_only_the_listed_modules() -> None:
     code = "import sys; from grader.setup import bootstrap; print(*(n for n in sys.modules if n.startswith('grader')))"
     root = Path(machine.__file__).parents[2]
     done = subprocess.run([sys.executable, "-S", "-c", code], cwd=root, capture_output=True, text=True, check=True)

@@ -12,7 +12,7 @@ from grader.setup import user_limits
 SAYS = "from grader.setup.user_limits import shares; print(*shares(), sep='|')"
 
 
-def test_it_says_what_there_is() -> None:
+def test_the_limit_of_open_files_is_reported() -> None:
     files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     assert user_limits.shares()[0].startswith(f"{files} open files, ")
 

@@ -56,7 +56,7 @@ def test_what_lies_below_a_package_belongs_to_it(package: Path) -> None:
 @pytest.mark.parametrize(
     "other", ["build/pkg", "install/pkg/share/pkg", "log/latest", ".git/x", "venv", "__pycache__", "ignored"]
 )
-def test_what_tools_leave_behind_holds_no_package(package: Path, other: str) -> None:
+def test_folders_that_tools_create_are_not_searched_for_packages(package: Path, other: str) -> None:
     make(package.parent / other, {"package.xml": "", "setup.py": ""})
     make(package.parent, {"venv/pyvenv.cfg": "", "ignored/COLCON_IGNORE": ""})
     assert open_submission(package.parent).package_dir == package.resolve()

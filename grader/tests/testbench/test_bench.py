@@ -99,7 +99,7 @@ os.kill(-1, signal.SIGKILL)
 
 
 @pytest.mark.parametrize("code", [KILLS, "import os\nos.kill(os.getppid(), 9)\n"], ids=["all", "the parent"])
-def test_who_kills_the_processes_of_the_cell_is_rejected(files: dict[str, bytes], code: str) -> None:
+def test_tests_that_kill_the_processes_of_the_cell_are_rejected(files: dict[str, bytes], code: str) -> None:
     runs = run(spec("rate"), {**files, TESTS: code.encode()})
     assert not any(each.accepted for each in runs)
 

@@ -146,7 +146,7 @@ def test_a_node_that_was_started_goes_on(ahead: Ahead) -> None:
     assert runs == [1]
 
 
-def test_what_went_wrong_at_the_start_is_reported_to_who_runs_it(ahead: Ahead) -> None:
+def test_an_error_at_the_start_of_a_trial_is_raised_when_the_trial_is_run(ahead: Ahead) -> None:
     class Broken(Made):
         def await_ready(self) -> None:
             raise MachineError("no room")  # noqa: EM101

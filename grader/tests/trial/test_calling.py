@@ -136,7 +136,7 @@ def f(x, y):
         "import os\n    while True: os.write(1, b'x' * 65536)",
     ],
 )
-def test_who_breaks_the_call_gets_no_numbers(ros: Ros, body: str) -> None:
+def test_a_function_that_breaks_the_call_has_no_result(ros: Ros, body: str) -> None:
     assert [each.values for each in called(ros, f"def f(x, y):\n    {body}\n")] == [None, None]
 
 

@@ -67,7 +67,7 @@ def test_a_module_that_is_imported_and_not_used_is_no_clue() -> None:
         "now = self.get_clock().now()",
     ],
 )
-def test_what_only_looks_like_it_is_no_clue(source: str) -> None:
+def test_code_that_does_not_use_wall_time_is_not_a_clue(source: str) -> None:
     assert clues(NODE + source) == []
 
 

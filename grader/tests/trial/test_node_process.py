@@ -38,9 +38,7 @@ def pipe() -> Iterator[tuple[int, int]]:
 
 @pytest.mark.parametrize("capacity", [PAGE, 16 * PAGE, PIPE])
 @pytest.mark.parametrize("size", [1, 100, 2049, 4095, 4097, 100_000])
-def test_whom_a_full_pipe_keeps_waiting_has_written_enough_to_be_noticed(
-    pipe: tuple[int, int], size: int, capacity: int
-) -> None:
+def test_a_pipe_that_blocks_its_writer_counts_as_full(pipe: tuple[int, int], size: int, capacity: int) -> None:
     reads, writes = pipe
     fcntl.fcntl(writes, fcntl.F_SETPIPE_SZ, capacity)
     with suppress(BlockingIOError):

@@ -6,7 +6,7 @@ if TYPE_CHECKING:
     from grader.tests.in_ros import InRos
 
 
-def test_all_that_has_come_is_handled_at_once_and_what_is_said_about_it_too(in_ros: InRos) -> None:
+def test_one_spin_handles_all_waiting_requests_and_their_log_lines(in_ros: InRos) -> None:
     handled = in_ros.run("trial.scenarios:what_one_spin_handles").result
     assert handled["commands"] == 3
     assert handled["log"][-1].startswith("Spawning turtle [turtle2]")

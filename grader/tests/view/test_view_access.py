@@ -37,7 +37,7 @@ def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> Non
     ],
     ids=["foreign origin", "other port", "no origin", "rebound name", "wrong token", "no token"],
 )
-def test_who_has_not_all_three_is_refused(system: World, wrong: dict[str, Any]) -> None:
+def test_a_connection_with_a_wrong_origin_host_or_token_is_refused(system: World, wrong: dict[str, Any]) -> None:
     wrong = dict(wrong)
     host, token, path = live(system)
     port = host.partition(":")[2]

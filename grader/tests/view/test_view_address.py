@@ -60,7 +60,7 @@ def test_the_token_is_for_its_user_alone(state: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "[]", '{"port": "x", "token": 3}', '{"port": 1, "token": ""}', '{"other": 1}'])
-def test_a_file_that_is_none_of_ours_is_not_believed(state: Path, text: str) -> None:
+def test_an_invalid_address_file_is_replaced(state: Path, text: str) -> None:
     state.parent.mkdir(parents=True)
     state.write_text(text)
     state.chmod(0o600)
@@ -70,9 +70,7 @@ def test_a_file_that_is_none_of_ours_is_not_believed(state: Path, text: str) -> 
     assert place.address.port > 1023
 
 
-def test_where_nothing_can_be_kept_there_is_a_view_all_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_view_starts_even_if_its_address_cannot_be_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").touch()
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "file"))
     listen("turtlesim").listening.close()

@@ -45,7 +45,7 @@ def test_another_origin_is_refused(origin: str) -> None:
     assert refusal(headers, live=False)
 
 
-def test_what_says_no_origin_may_read_the_files_but_not_drive() -> None:
+def test_a_request_without_an_origin_may_read_files_but_not_drive() -> None:
     assert refusal({"host": "127.0.0.1:4711"}, live=False) is None
     assert refusal({"host": "127.0.0.1:4711"}, live=True)
 

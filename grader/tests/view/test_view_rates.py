@@ -21,7 +21,7 @@ def test_several_arrivals_may_be_reported_at_once() -> None:
     assert arrivals(0.0, 0.1, 0.2, 0.3, count=5).hertz(0.3) == pytest.approx(50.0)
 
 
-def test_what_was_long_ago_does_not_count() -> None:
+def test_old_messages_do_not_count_for_the_rate() -> None:
     slow_then_fast = [0.0, 1.0, 2.0, *(3.0 + 0.1 * number for number in range(round(10 * WINDOW_S) + 20))]
     assert arrivals(*slow_then_fast).hertz(slow_then_fast[-1]) == pytest.approx(10.0)
 

@@ -106,7 +106,7 @@ def test_clearing_leaves_nothing() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(-1e300, 1e300), st.floats(-1e300, 1e300)), min_size=2, max_size=30))
-def test_no_place_is_too_far_and_none_is_lost(points: list[tuple[float, float]]) -> None:
+def test_a_stroke_stays_near_all_its_points(points: list[tuple[float, float]]) -> None:
     stroke = Stroke(INK, [place(*points[0])])
     for point in points[1:]:
         stroke.add(place(*point))

@@ -259,7 +259,7 @@ while rclpy.ok():
         ("heard = node.create_subscription(Pose, '/turtle1/pose', hear, 10)", "rclpy.spin_once(node)", False),
     ],
 )
-def test_what_nothing_wakes_waits_for_ever_in_spin_once(made: str, spun: str, *, waits: bool) -> None:
+def test_spin_once_without_anything_that_wakes_it_is_a_cause(made: str, spun: str, *, waits: bool) -> None:
     source = LOOP.format(made=made, spun=spun)
     reported = silence(source)
     if waits:
