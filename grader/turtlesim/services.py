@@ -11,9 +11,7 @@ OF_NODE = (
 )
 """The services that rclpy adds to a node, under the name of the node."""
 OF_TURTLE = ("set_pen", "teleport_absolute", "teleport_relative")
-SERVICES = (
-    *("/clear", "/kill", "/reset", "/spawn"),
-    *(f"/turtle1/{name}" for name in OF_TURTLE),
-    *(f"/turtlesim/{name}" for name in OF_NODE),
-)
-"""The services of the simulator while turtle1 is its only turtle. Those of actions are left out."""
+OF_TURTLESIM = ("/spawn", "/kill", "/reset", "/clear", *(f"/turtle1/{name}" for name in OF_TURTLE))
+"""The services that turtlesim itself offers while turtle1 is its only turtle."""
+SERVICES = (*OF_TURTLESIM, *(f"/turtlesim/{name}" for name in OF_NODE))
+"""All services of the simulator while turtle1 is its only turtle. Those of actions are left out."""

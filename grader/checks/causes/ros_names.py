@@ -169,14 +169,3 @@ CONSTANTS = {
     ),
 }
 """Maps a class to the constants that beginners use. They are attributes of the class itself, so no object is needed."""
-
-SERVICES = (
-    "/spawn",
-    "/kill",
-    "/reset",
-    "/clear",
-    "/turtle1/set_pen",
-    "/turtle1/teleport_absolute",
-    "/turtle1/teleport_relative",
-)
-"""The services of turtlesim."""

@@ -191,9 +191,7 @@ def stored_before_refused(evidence: Evidence) -> Cause | None:
 
 
 def _may_be_new(value: ast.expr) -> bool:
-    """Return whether a stored value may be that of a parameter. None, True and self.count + 1 are not."""
-    if isinstance(value, ast.Constant):
-        return isinstance(value.value, str | int | float) and not isinstance(value.value, bool)
+    """Return whether a stored value may be that of a parameter. A constant and self.count + 1 are not."""
     return any(isinstance(each, ast.Name) and each.id != "self" for each in ast.walk(value))
 
 

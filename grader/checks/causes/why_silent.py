@@ -6,7 +6,6 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.waiting import SPINS, inside
 from grader.checks.causes.why_blocked import WAKES, not_spun, only_waits, why_blocked
@@ -16,6 +15,7 @@ from grader.checks.causes.why_never_set import never_set
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
+from grader.turtlesim.services import OF_TURTLESIM
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -124,12 +124,12 @@ def not_there(evidence: Evidence, node: ast.AST, module: Module) -> Cause | None
     recording = evidence.recording
     observed = {*(each.service for each in recording.offers), *(each.service for each in recording.calls)}
     observed |= {CATCH} if recording.catch_from_s is not None else set()
-    known = observed | set(ros_names.SERVICES)
+    known = observed | set(OF_TURTLESIM)
     if not isinstance(name, str) or f"/{name.strip('/')}" in known:
         return None
     last = name.rpartition("/")[2]
-    same = next((each for each in ros_names.SERVICES if each.rpartition("/")[2] == last), None)
-    guess = same or nearest(f"/{name.strip('/')}", ros_names.SERVICES)
+    same = next((each for each in OF_TURTLESIM if each.rpartition("/")[2] == last), None)
+    guess = same or nearest(f"/{name.strip('/')}", OF_TURTLESIM)
     more = f" A similar service exists: {guess}." if guess else ""
     return Cause("service-not-there", f"The node waits for the service {shorten(name)}, which does not exist.{more}")
 

@@ -6,13 +6,13 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes import ros_names
 from grader.checks.causes.waiting import inside
 from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_silent import not_there, why_nothing
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
+from grader.turtlesim.services import OF_TURTLESIM
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -40,7 +40,7 @@ def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
     if any(isinstance(name, str) and f"/{name.strip('/')}" == wanted for name in names.values()):
         return None
     for call, name in names.items():
-        if not isinstance(name, str) or f"/{name.strip('/')}" in ros_names.SERVICES:
+        if not isinstance(name, str) or f"/{name.strip('/')}" in OF_TURTLESIM:
             continue
         text = f"The client uses the name {shorten(name)}. The name of the service is {wanted}."
         near = nearest(f"/{name.strip('/')}", [wanted]) or wanted.endswith(name.rpartition("/")[2])

@@ -19,7 +19,7 @@ from grader.trial.node_group import NodeGroup
 from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -117,6 +117,22 @@ def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_i
     assert (end.by, end.exit_code, end.stop_s) == ("SIGINT", 3, 0.0)
 
 
+def test_a_node_that_is_busy_after_another_one_has_left_gets_time_before_it_is_stopped() -> None:
+    busy = r"printf '\0ready\n'; read order; trap 'exit 0' INT; echo waits; while :; do :; done"
+    limits = Limits(processes=50, cpu_s=60)
+    with (
+        NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as first,
+        NodeProcess(LauncherProcess(["sh", "-c", busy]), limits) as second,
+    ):
+        group = NodeGroup([first, second])
+        _run(group)
+        _stop_until(first.ended, group)
+        left_s = time.monotonic()
+        _stop_until(second.ended, group)
+        assert time.monotonic() - left_s >= node_group.SETTLES_S
+        assert second.end(0.0).by == "SIGINT"
+
+
 def test_a_node_with_too_many_threads_to_observe_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuses(_: int) -> None:
         raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
@@ -133,13 +149,22 @@ def test_a_node_with_too_many_threads_to_observe_is_stopped(monkeypatch: pytest.
 
 def _run_and_stop(group: NodeGroup) -> None:
     """Start the nodes, wait until each of them has written something, and stop them."""
+    _run(group)
+    _stop_until(group.all_ended, group)
+
+
+def _stop_until(ended: Callable[[], bool], group: NodeGroup) -> None:
+    while not ended():
+        group.stop()
+        time.sleep(0.01)
+
+
+def _run(group: NodeGroup) -> None:
+    """Start the nodes, and wait until each of them has written something."""
     group.await_ready()
     group.start([{} for _ in group.processes], b"")
     for process in group.processes:
         until(partial(_has_written, process))
-    while not group.all_ended():
-        group.stop()
-        time.sleep(0.01)
 
 
 def _has_written(process: NodeProcess) -> bool:

@@ -108,7 +108,7 @@ def test_a_method_for_the_square_of_the_distance_is_not_told() -> None:
 @pytest.mark.parametrize(
     ("check", "told"),
     [
-        ("self.radius = 1.0", True),
+        ("self.refused_for = 0.0", False),
         ("radius = 1.0", False),
         ("self.radius = parameters[0].value", True),
         ("self.checked = True", False),
