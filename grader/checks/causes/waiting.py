@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.callback_code import functions_in_callbacks, inside, last_name
 from grader.common.words import shorten
-from grader.submission.constants import dotted, evaluate
+from grader.submission.constants import dotted, evaluate, number
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Module
 
-Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
 """Methods of service clients, action clients and goal handles that wait for the response.
@@ -29,31 +29,45 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete")
 SERVERS = ("wait_for_service", "wait_for_server")
 SLEEPS = ("sleep", "sleep_for", "sleep_until")
 WAITS = (*RESPONSES, *SPINS, *SERVERS, *SLEEPS)
+TIMEOUTS = {
+    "call": 1,
+    "wait_for_service": 0,
+    "wait_for_server": 0,
+    "spin_once": 0,
+    "spin_until_future_complete": 1,
+    "rclpy.spin_once": 2,
+    "rclpy.spin_until_future_complete": 3,
+}
+"""The indexes of the argument timeout_sec of methods, and of functions of rclpy (rclpy 7.1)."""
 LOOP = "while"
 """The `name` of a `Wait` that is a while loop whose condition calls done()."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
 """If the source uses one of these, another thread can receive the response while a callback waits."""
-STARTS = frozenset({"Thread", "Timer", "start_new_thread", "submit", "to_thread", "run_in_executor"})
-"""Functions that call one of their arguments in another thread."""
-STRAIGHT = frozenset({"__init__", "main"})
-"""Functions that the executor does not call. They do not count as callbacks, even where their names are used
-without calling them."""
 OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 """Objects whose method `call` does not belong to a service client."""
 
 
 @dataclass(frozen=True)
 class Wait:
-    """A wait in a callback: `name` is the function that waits, and `written` is its name or alias in the source."""
+    """A wait in a callback: `name` is the function that waits, and `written` is its name or alias in the source.
+
+    `limited` is whether the call has a timeout.
+    """
 
     name: str
     written: str
     where: Where
+    limited: bool = False
+
+    @property
+    def needs_thread(self) -> bool:
+        """Whether the node waits for a response, or spins. If it has one thread, it receives no response meanwhile."""
+        return self.name in (LOOP, *RESPONSES, *SPINS)
 
     @property
     def deadlock(self) -> bool:
-        """Whether the node waits for a response, or spins. If it has one thread, it never receives the response."""
-        return self.name in (LOOP, *RESPONSES, *SPINS)
+        """Whether a node with one thread waits forever."""
+        return self.needs_thread and not self.limited
 
     @property
     def observed(self) -> str:
@@ -63,6 +77,8 @@ class Wait:
     @property
     def cause(self) -> Cause:
         """The reason why a callback must not wait in this way, and the alternative."""
+        if self.needs_thread and self.limited:
+            return self._limited_cause
         if self.name in SPINS[:2]:
             text = (
                 f"{self._subject} waits inside a callback, but the executor calls no other callback until this one "
@@ -89,6 +105,20 @@ class Wait:
         return Cause("sleep-in-callback", text, self.where)
 
     @property
+    def _limited_cause(self) -> Cause:
+        if self.name in SPINS[:2]:
+            text = (
+                f"{self._subject} waits inside a callback, at most until its timeout. Meanwhile, the executor calls no "
+                "other callback. Remove the call. rclpy.spin in main calls every callback."
+            )
+            return Cause("spins-in-callback", text, self.where)
+        text = (
+            f"{self._subject} waits inside a callback until its timeout, because rclpy.spin receives no response "
+            f"before the callback returns. {self._instead}"
+        )
+        return Cause("waits-in-callback", text, self.where)
+
+    @property
     def _subject(self) -> str:
         if self.name == LOOP:
             return "A loop that checks done()"
@@ -111,15 +141,15 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
         looped = {id(each) for node in inside(function) if isinstance(node, ast.While) for each in ast.walk(node.test)}
         for node in inside(function):
             where = Where(module.file, getattr(node, "lineno", None))
-            if isinstance(node, ast.While) and "done" in (_last(each) for each in _calls_in(node.test)):
+            if isinstance(node, ast.While) and "done" in (last_name(each) for each in _calls_in(node.test)):
                 found.append(Wait(LOOP, LOOP, where))
             elif isinstance(node, ast.Call):
-                written = _last(node)
+                written = last_name(node)
                 name = aliases.get(written, "") if written not in own or _of_client(node, clients) else ""
                 if isinstance(node.func, ast.Call):
-                    name, written = _function_named(node.func, module), _last(node.func)
-                if name and _really_waits(node, name, written, in_loop=id(node) in looped):
-                    found.append(Wait(name, written, where))
+                    name, written = _function_named(node.func, module), last_name(node.func)
+                if name and _really_waits(node, name, written, module, in_loop=id(node) in looped):
+                    found.append(Wait(name, written, where, limited=_has_timeout(node, name, module)))
     places = {module.file: index for index, module in enumerate(modules)}
     return sorted(set(found), key=lambda wait: (places[wait.where.file], wait.where.line or 0))
 
@@ -138,14 +168,16 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
     return next((wait.cause for wait in waits_in_callbacks(evidence) if wait.deadlock), None)
 
 
-def _really_waits(call: ast.Call, name: str, written: str, *, in_loop: bool) -> bool:
+def _really_waits(call: ast.Call, name: str, written: str, module: Module, *, in_loop: bool) -> bool:
     if name in SERVERS:
-        return in_loop or not _has_timeout(call)
+        return in_loop or not _has_timeout(call, name, module)
+    if name in SPINS and number(_timeout(call, name), module.names) == 0.0:
+        return False
     if written != "call":
         return True
     owner = getattr(call.func, "value", None)
     if isinstance(owner, ast.Call):
-        return _last(owner) in CREATE
+        return last_name(owner) in CREATE
     return isinstance(owner, ast.expr) and dotted(owner) not in OTHER_CALLS
 
 
@@ -153,7 +185,7 @@ def _of_client(call: ast.Call, clients: frozenset[str]) -> bool:
     """Return whether the called function is a method of a client, not the node's own function with the same name."""
     owner = getattr(call.func, "value", None)
     if isinstance(owner, ast.Call):
-        return _last(owner) in CREATE
+        return last_name(owner) in CREATE
     return isinstance(owner, ast.expr) and dotted(owner) in clients
 
 
@@ -163,14 +195,27 @@ def clients_of(modules: Iterable[Module]) -> frozenset[str]:
         dotted(target) or ""
         for module in modules
         for node in module.nodes
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and _last(node.value) in CREATE
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and last_name(node.value) in CREATE
         for target in node.targets
     )
 
 
-def _has_timeout(call: ast.Call) -> bool:
-    given = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg in ("timeout_sec", None))]
-    return any(not (isinstance(value, ast.Constant) and value.value is None) for value in given)
+def _has_timeout(call: ast.Call, name: str, module: Module) -> bool:
+    """Return whether a call to this function ends at a timeout. None and negative numbers mean no timeout."""
+    timeout = _timeout(call, name)
+    if timeout is None or (isinstance(timeout, ast.Constant) and timeout.value is None):
+        return False
+    limit = number(timeout, module.names)
+    return limit is None or limit >= 0.0
+
+
+def _timeout(call: ast.Call, name: str) -> ast.expr | None:
+    """Return the argument that is the timeout of a call to a function that waits, or None."""
+    by_name = [each.value for each in call.keywords if each.arg in ("timeout_sec", None)]
+    owner = (dotted(call.func) or "other").rpartition(".")[0]
+    place = TIMEOUTS.get(f"{owner or 'rclpy'}.{name}", TIMEOUTS.get(name))
+    by_place = [] if place is None else call.args[place : place + 1]
+    return next(iter((*by_name, *by_place)), None)
 
 
 def _aliases(modules: Iterable[Module]) -> dict[str, str]:
@@ -194,65 +239,13 @@ def _function_named(value: ast.expr, module: Module) -> str:
     """Return the name of the waiting function to which `client.call`, partial(...) or getattr(...) refers, or ""."""
     if isinstance(value, ast.Attribute) and value.attr in WAITS:
         return value.attr
-    if isinstance(value, ast.Call) and _last(value) == "partial" and value.args:
+    if isinstance(value, ast.Call) and last_name(value) == "partial" and value.args:
         return _function_named(value.args[0], module)
-    if isinstance(value, ast.Call) and _last(value) == "getattr" and len(value.args) > 1:
+    if isinstance(value, ast.Call) and last_name(value) == "getattr" and len(value.args) > 1:
         name = evaluate(value.args[1], module.names)
         return name if isinstance(name, str) and name in WAITS else ""
     return ""
 
 
-def functions_in_callbacks(modules: Iterable[Module]) -> Iterator[tuple[Module, Function]]:
-    """Yield the lambdas and functions that are stored or passed on (not to a thread), and the functions they call."""
-    functions: dict[str, list[tuple[Module, Function]]] = {}
-    waiting: list[tuple[Module, Function]] = []
-    passed: set[str] = set()
-    for module in modules:
-        called = {id(node.func) for node in module.nodes if isinstance(node, ast.Call)}
-        in_threads = {id(node) for node in _in_threads(module)}
-        for node in module.nodes:
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                functions.setdefault(node.name, []).append((module, node))
-            elif id(node) in in_threads:
-                continue
-            elif isinstance(node, ast.Lambda):
-                waiting.append((module, node))
-            elif (
-                isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load) and id(node) not in called
-            ):
-                passed.add(node.id if isinstance(node, ast.Name) else node.attr)
-    known = passed - STRAIGHT
-    waiting += [each for name in sorted(known) for each in functions.get(name, ())]
-    while waiting:
-        module, function = waiting.pop()
-        yield module, function
-        called_here = {_last(node) for node in inside(function) if isinstance(node, ast.Call)}
-        new = (called_here & functions.keys()) - known - STRAIGHT
-        known |= new
-        waiting += [each for name in sorted(new) for each in functions[name]]
-
-
-def _in_threads(module: Module) -> Iterator[ast.expr]:
-    """Yield the arguments of calls that start a thread. If one is a function, a wait in it delays no callback."""
-    for node in module.nodes:
-        if isinstance(node, ast.Call) and _last(node) in STARTS:
-            yield from (*node.args, *(keyword.value for keyword in node.keywords))
-
-
-def inside(function: Function) -> Iterator[ast.AST]:
-    """Yield the syntax nodes of a function, except those inside functions and classes that it defines."""
-    waiting: list[ast.AST] = list(function.body) if isinstance(function.body, list) else [function.body]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
-            waiting += ast.iter_child_nodes(node)
-
-
 def _calls_in(node: ast.AST) -> Iterator[ast.Call]:
     return (each for each in ast.walk(node) if isinstance(each, ast.Call))
-
-
-def _last(call: ast.Call) -> str:
-    """Return the last part of the called function's name."""
-    return getattr(call.func, "attr", getattr(call.func, "id", ""))

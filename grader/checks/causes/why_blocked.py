@@ -6,7 +6,8 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.waiting import clients_of, functions_in_callbacks, has_threads, inside, waits_in_callback
+from grader.checks.causes.callback_code import functions_in_callbacks, inside
+from grader.checks.causes.waiting import clients_of, has_threads, waits_in_callback
 from grader.checks.causes.why_other_object import NEED_THE_NODE
 from grader.submission.constants import dotted
 from grader.submission.where import Where

@@ -7,11 +7,11 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.callback_code import functions_in_callbacks
 from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.refused_calls import why_refused
 from grader.checks.causes.trailing_comma import trailing_comma
-from grader.checks.causes.waiting import functions_in_callbacks
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_type
 from grader.checks.causes.why_ended import named_only, spins_in_a_thread

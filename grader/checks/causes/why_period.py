@@ -11,10 +11,10 @@ from grader.checks.causes.why_rate import (
     is_repeated,
     may_send,
     reaches,
-    sends_each_time,
     why_several_calls,
     why_sleep_in_callback,
 )
+from grader.checks.causes.why_silent import calls_method
 from grader.checks.edit import at
 from grader.submission.constants import dotted, written
 from grader.submission.constants import number as constant
@@ -64,7 +64,8 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
             return Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, rate_hz))
-    asleep = why_sleep_in_callback(evidence) if mean * rate_hz > 1.0 else None
+    shortest = min([1.0 / rate_hz, *(period for _, period in timers if period)])
+    asleep = why_sleep_in_callback(evidence, shortest) if mean * rate_hz > 1.0 else None
     if asleep is not None:
         return asleep
     for sleep in code.calls("sleep"):
@@ -83,7 +84,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
     counted = _every_few_calls(evidence, noun, call, mean) if len(timers) == 1 else None
     if counted is not None:
         return counted
-    if timers and timers[0][1] is None and sends_each_time(evidence, call):
+    if timers and timers[0][1] is None and _sends_each_time(evidence, call):
         return Cause("timer-period", PERIOD, timers[0][0].where)
     where = timers[0][0].where if timers else evidence.place(call)
     return Cause("wrong-rate", f"The time between two calls to {call} sets the rate.", where)
@@ -92,7 +93,7 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
 def _every_few_calls(evidence: Evidence, noun: str, call: str, mean: float) -> Cause | None:
     """Return the cause if the callback of the only timer sends only on every 2nd, 3rd, ... call, else None."""
     timer, period = _timers(evidence, call)[0]
-    if not period or sends_each_time(evidence, call):
+    if not period or _sends_each_time(evidence, call):
         return None
     calls = round(mean / period)
     name = (dotted(timer.argument(1, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
@@ -138,3 +139,14 @@ def _timers(evidence: Evidence, call: str) -> list[tuple[Call, float | None]]:
     if evidence.code.calls(call):
         made = [timer for timer in made if may_send(timer, call)]
     return [(timer, constant(timer.argument(0, "timer_period_sec"), timer.module.names)) for timer in made]
+
+
+def _sends_each_time(evidence: Evidence, call: str) -> bool:
+    """Return whether the callback of a timer calls `call` once, and not in a branch or a loop."""
+    for module, name in callbacks_of(evidence, "create_timer"):
+        for node in module.nodes:
+            if isinstance(node, ast.FunctionDef) and node.name == name:
+                statements = [each for each in node.body if isinstance(each, ast.Expr) and calls_method(each, call)]
+                if len(statements) == 1 and sum(calls_method(each, call) for each in node.body) == 1:
+                    return True
+    return False

@@ -32,6 +32,8 @@ SEVERAL = 0.1
 most this fraction."""
 PAUSES = ("sleep", "sleep_for", "sleep_until", *SPINS, "wait", "get", "join", "input")
 """Functions and methods whose purpose is to wait."""
+ONCE = ("__init__", "main")
+"""Functions that run once."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 EACH_FRAME = ("pose", "color_sensor")
@@ -144,10 +146,14 @@ def why_timers_grow(evidence: Evidence) -> Cause | None:
     return Cause("timer-in-callback", text, where)
 
 
-def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback sleeps for a time that is known from the source, else None."""
+def why_sleep_in_callback(evidence: Evidence, period_s: float) -> Cause | None:
+    """Return the cause if a callback sleeps for at least a period (s), else None.
+
+    In a loop, a shorter sleep is enough. A length that is not known from the source is not.
+    """
     found = _made_in_callback(evidence, "sleep")
-    if found is None or not any(call.where == found[1] and _length(call) for call in evidence.code.calls("sleep")):
+    sleeps = [call for call in evidence.code.calls("sleep") if found is not None and call.where == found[1]]
+    if found is None or not any((_length(call) or 0.0) >= period_s or _in_loop(call) for call in sleeps):
         return None
     text = "While a method sleeps, a node with one thread does nothing else."
     return Cause("sleep-in-callback", text, found[1])
@@ -226,11 +232,13 @@ def _most(body: list[ast.stmt], call: str) -> int:
 
 def is_repeated(call: Call) -> bool:
     """Return whether a call is in a loop, or in a function that may be called again and again."""
-    outer = (each for each in call.module.nodes if isinstance(each, ast.While | ast.For | ast.FunctionDef))
-    around = [each for each in outer if call.node in ast.walk(each)]
-    if any(isinstance(each, ast.While | ast.For) for each in around):
-        return True
-    return any(isinstance(each, ast.FunctionDef) and each.name not in ("__init__", "main") for each in around)
+    functions = (each for each in call.module.nodes if isinstance(each, ast.FunctionDef) and each.name not in ONCE)
+    return _in_loop(call) or any(call.node in ast.walk(each) for each in functions)
+
+
+def _in_loop(call: Call) -> bool:
+    loops = (each for each in call.module.nodes if isinstance(each, ast.While | ast.For))
+    return any(call.node in ast.walk(each) for each in loops)
 
 
 def late_cause(evidence: Evidence) -> str:
@@ -239,17 +247,6 @@ def late_cause(evidence: Evidence) -> str:
         return "A sleep at the start may be the reason."
     waits = evidence.code.calls("wait_for_service")
     return "The wait for a service (wait_for_service) may be the reason." if waits else ""
-
-
-def sends_each_time(evidence: Evidence, call: str) -> bool:
-    """Return whether the callback of a timer calls `call` once, and not in a branch or a loop."""
-    for module, name in callbacks_of(evidence, "create_timer"):
-        for node in module.nodes:
-            if isinstance(node, ast.FunctionDef) and node.name == name:
-                statements = [each for each in node.body if isinstance(each, ast.Expr) and _calls(each, call)]
-                if len(statements) == 1 and sum(_calls(each, call) for each in node.body) == 1:
-                    return True
-    return False
 
 
 def _length(sleep: Call) -> float | None:

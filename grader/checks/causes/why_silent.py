@@ -6,8 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.callback_code import inside
 from grader.checks.causes.timers import timer_fault
-from grader.checks.causes.waiting import SPINS, inside
+from grader.checks.causes.waiting import SPINS
 from grader.checks.causes.why_blocked import WAKES, not_spun, only_waits, why_blocked
 from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_inactive import never_activated

@@ -7,7 +7,8 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.waiting import functions_in_callbacks, has_threads, inside
+from grader.checks.causes.callback_code import functions_in_callbacks, inside
+from grader.checks.causes.waiting import has_threads
 from grader.checks.causes.why_silent import calls_method, spins
 from grader.submission.constants import dotted, number
 from grader.submission.where import Where

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.waiting import functions_in_callbacks, inside
+from grader.checks.causes.callback_code import functions_in_callbacks, inside
 from grader.checks.causes.why_rate import may_send
 from grader.submission.constants import dotted
 from grader.submission.where import Where

@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.waiting import inside
+from grader.checks.causes.callback_code import inside
 from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_silent import not_there, why_nothing
 from grader.common.words import nearest, shorten

@@ -48,7 +48,7 @@ def _early(evidence: Evidence, _: NoParams) -> Finding | None:
 def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
     """Return a failed finding if the source alone shows that a callback waits where it must not, or None."""
     threads = has_threads(evidence)
-    first = next((wait for wait in waits if not (threads and wait.deadlock)), None)
+    first = next((wait for wait in waits if not (threads and wait.needs_thread)), None)
     if first is not None:
         return failed(f"A callback {first.observed}.", EXPECTED, first.cause)
     blocked = next((wait for wait in waits if in_default_group(evidence, wait)), None)

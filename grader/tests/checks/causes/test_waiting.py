@@ -98,6 +98,7 @@ def test_a_callback_may_be_passed_in_any_form(callback: str) -> None:
         {"step": "call(words)"},
         {"step": "self.call(words)"},
         {"step": "if self.future.done(): pass"},
+        {"step": "rclpy.spin_once(self, timeout_sec=0)"},
         {"init": "Thread(target=self.ask, args=(1,)).start()", "ask": "self.pen.call(request); time.sleep(1.0)"},
         {"init": "Thread(target=lambda: rclpy.spin(self)).start()"},
         {"init": "self.pool.submit(self.ask, 1)", "ask": "time.sleep(1.0)"},
@@ -129,6 +130,42 @@ def test_a_sleep_in_a_callback_is_told_from_a_deadlock(step: str, *, found: bool
     words = "While a callback sleeps, a node with one thread calls no other callback. Count the timer calls instead,"
     assert wait.cause.text.startswith(words) == found
     assert wait.deadlock != found
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        ("rclpy.spin_once(self, timeout_sec=0.1)", "spin_once waits inside a callback, at most until its timeout."),
+        ("self.executor.spin_once(0.1)", "spin_once waits inside a callback, at most until its timeout."),
+        ("until(self, future, None, 1.0)", "until, which is spin_until_future_complete, waits inside a callback until"),
+        ("self.pen.call(request, 2.0)", "call waits inside a callback until its timeout, because rclpy.spin receives"),
+        ("self.pen.call(request, timeout_sec=self.limit)", "call waits inside a callback until its timeout, because"),
+    ],
+)
+def test_a_wait_with_a_timeout_is_no_deadlock(step: str, words: str) -> None:
+    source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
+    package = evidence(package=submission({NODE_FILE: source}))
+    (wait,) = waits_in_callbacks(package)
+    assert wait.cause.text.startswith(words)
+    assert waits_in_callback(package) is None
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "rclpy.spin_once(self, timeout_sec=None)",
+        "rclpy.spin_once(self, timeout_sec=-1)",
+        "rclpy.spin_once(self)",
+        "until(self, future)",
+        "self.executor.spin_until_future_complete(future)",
+        "self.pen.call(request)",
+    ],
+)
+def test_a_wait_without_a_timeout_is_a_deadlock(step: str) -> None:
+    source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
+    cause = waits_in_callback(evidence(package=submission({NODE_FILE: source})))
+    assert cause is not None
+    assert "a deadlock" in cause.text
 
 
 def test_a_spin_in_a_callback_has_no_method_of_the_same_name() -> None:

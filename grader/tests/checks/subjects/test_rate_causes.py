@@ -52,6 +52,24 @@ def test_a_callback_that_sends_in_some_of_its_calls_is_told_in_how_many(timer: s
     assert ("send is called every 0.25 s, and one in 4 calls sends a command." in finding_.cause) == found
 
 
+@pytest.mark.parametrize(
+    ("timer", "rest", "blamed"),
+    [
+        ("0.5", "time.sleep(1.0)", True),
+        ("0.2", "time.sleep(0.45)", True),
+        ("0.5", "time.sleep(0.02)", False),
+        ("0.5", "for _ in range(50):\n            time.sleep(0.02)", True),
+        ("0.5", "time.sleep(self.rest)", False),
+    ],
+)
+def test_only_a_sleep_that_is_long_enough_explains_messages_that_are_too_rare(
+    timer: str, rest: str, *, blamed: bool
+) -> None:
+    sleeps = ("    def send(self):", f"    def send(self):\n        {rest}")
+    found = rate("one hertz", ("0.5", timer), sleeps)
+    assert (found.diagnosis == "sleep-in-callback") == blamed
+
+
 REPORTS = ("    def send(self):", "    def report(self):\n        print(3)\n\n    def send(self):")
 
 
@@ -77,7 +95,7 @@ def test_only_a_timer_that_sends_explains_too_few_messages(called: str, *, told:
 @pytest.mark.parametrize(("shape", "diagnosis"), [("four hertz", "timer-period"), ("one hertz", "sleep-in-callback")])
 def test_a_sleep_does_not_explain_too_many_messages(shape: str, diagnosis: str) -> None:
     unknown = (TIMER, "self.create_timer(self.period, self.send)")
-    found = rate(shape, unknown, ("        msg = Twist()", "        time.sleep(0.2)\n        msg = Twist()"))
+    found = rate(shape, unknown, ("        msg = Twist()", "        time.sleep(0.6)\n        msg = Twist()"))
     assert found.diagnosis == diagnosis
 
 
