@@ -11,6 +11,7 @@ from grader.classroom.engine import Finished, Progress
 from grader.classroom.task import set_aside
 
 if TYPE_CHECKING:
+    from grader.checks.outcome import Outcome
     from grader.classroom.engine import Engine, Event
     from grader.classroom.order import Order, Todo
     from grader.classroom.progress_display import Name, Screen
@@ -53,6 +54,8 @@ class _Run:
     """The submissions that ended with an `error`. If not all submissions ended so, these are graded once more."""
     failures: Counter[Name] = field(default_factory=Counter)
     graded: dict[Name, Result] = field(default_factory=dict)
+    outcomes: dict[Outcome, Outcome] = field(default_factory=dict)
+    """Every outcome that occurs in a report. Equal outcomes of a large class are stored once."""
 
     def goes_on(self) -> bool:
         """Return whether any submission still has to be graded. Submissions that ended with an `error` come last."""
@@ -97,7 +100,8 @@ class _Run:
         self.failures[name] += broken
         errors = one.errors + self.failures[name] if broken else 0
         result = self.results.save(one.found.student, done.report, one.key, done.page, errors)
-        self.graded[name] = result
+        shared = tuple(self.outcomes.setdefault(outcome, outcome) for outcome in done.report.outcomes)
+        self.graded[name] = result = replace(result, report=replace(result.report, outcomes=shared))
         if broken and self.failures[name] < TRIES:
             self.again[name] = one
             self.screen.show(name, "The submission could not be judged. It may be graded again later")

@@ -85,6 +85,8 @@ def assert_set_aside(done: dict[str, Result]) -> None:
     assert {outcome.status for outcome in aside.outcomes} == {Status.ERROR}
     assert "was lost while it was grading" in aside.outcomes[0].finding.observed
     assert (aside.points, aside.max) == (0.0, 100.0)
+    ben, clara = (done[student].report.outcomes[1:] for student in ("ben", "clara"))  # the first one names the folder
+    assert [id(outcome) for outcome in ben] == [id(outcome) for outcome in clara], "equal outcomes are stored twice"
     assert (done["anna"].report.points, done["ben"].report.points) == (100.0, 0.0)
 
 

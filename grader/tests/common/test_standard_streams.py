@@ -62,7 +62,7 @@ def test_messages_that_cannot_be_written_are_no_error(tmp_path: Path, command: s
 
 
 def test_a_report_arrives_although_the_progress_cannot_be_written(tmp_path: Path) -> None:
-    line = "grader validate 03-circle-publisher"
+    line = "grader check solutions/03-circle-publisher/my_robot_controller"
     assert run(f"{line} 2> /dev/full", tmp_path).stdout == run(line, tmp_path).stdout != ""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,14 +39,19 @@ def children(pid: int) -> list[int]:
 
 @contextmanager
 def asleep(pid: int) -> Iterator[None]:
-    """Suspend a process and all its descendants for a while, as happens when a laptop sleeps."""
+    """Suspend a process and all its descendants for a while, as happens when a laptop sleeps.
+
+    A descendant may end before it is suspended, or be killed by a process that has already been resumed.
+    """
     stopped = [pid]
     for each in stopped:
-        os.kill(each, signal.SIGSTOP)
-        stopped += children(each)
+        with suppress(ProcessLookupError, FileNotFoundError):
+            os.kill(each, signal.SIGSTOP)
+            stopped += children(each)
     yield
     for each in stopped:
-        os.kill(each, signal.SIGCONT)
+        with suppress(ProcessLookupError):
+            os.kill(each, signal.SIGCONT)
 
 
 def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None:
