@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 
 import pytest
@@ -28,6 +29,19 @@ from grader.trial import fork_server
 fork_server._set_environment({"ROS_PYTHON_CHECK_FIELDS": "0"})
 print(String(data=5).data)
 """
+FORKED = """
+import os, socket, sys
+from grader.trial import conductor, fork_server
+os.dup2(1, fork_server.NODES_SOCKET)
+orders = iter([({"conductors": {"ROS_PYTHON_CHECK_FIELDS": "0"}}, [os.dup(1), os.dup(1)]), ({}, [])])
+fork_server._next_order = lambda requests: next(orders)
+fork_server._try = lambda import_: ([], "")
+fork_server._enter_room = lambda order, problem: None
+conductor.main = lambda nodes: print(os.environ["ROS_PYTHON_CHECK_FIELDS"], flush=True)
+os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"
+sys.argv = ["", "node", str(os.dup(1))]
+fork_server.main()
+"""
 
 
 def test_the_conductor_and_the_node_are_forks_of_one_import() -> None:
@@ -47,6 +61,17 @@ def test_conductors_do_not_check_the_values_in_messages() -> None:
     start = interpreter("-c", CHECKED, env=env)
     done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False, timeout=HANG_S)
     assert done.stdout == "5\n", done.stderr
+
+
+def test_a_server_for_conductors_has_their_environment_although_it_is_a_fork_of_the_one_for_nodes() -> None:
+    ours, theirs = socket.socketpair()
+    start = interpreter("-c", FORKED)
+    with ours, theirs:
+        done = subprocess.run(
+            start.argv, env=start.env, stdout=theirs.fileno(), stderr=subprocess.PIPE, check=False, timeout=HANG_S
+        )
+        theirs.close()
+        assert (ours.recv(64), done.returncode) == (b"0\n", 0), done.stderr.decode()
 
 
 def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_started_again() -> None:
