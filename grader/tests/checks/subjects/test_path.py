@@ -89,13 +89,13 @@ def test_a_trajectory_with_straight_parts_is_reported_by_their_number(commands: 
     assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:15")
 
 
-def test_a_trajectory_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
+def test_a_trajectory_that_is_not_round_is_explained_by_the_commands_only() -> None:
     assert circle("spiral").cause == "The commands change. A circle needs the same command all the time."
     two = [(t_s, 1.0 + (t_s > 5.0), 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
     assert finding("circle", evidence(recording(two))).cause == circle("spiral").cause
     frames = SHAPES["spiral"]().frames
     steady = replace(SHAPES["crash"](), frames=frames)
-    assert finding("circle", evidence(steady)).cause == f"The node crashed: ZeroDivisionError at {NODE_FILE}:14."
+    assert finding("circle", evidence(steady)).cause == "", "a node that ends does not bend a circle"
 
 
 def test_a_circle_in_the_wrong_place_is_explained_by_the_commands() -> None:
