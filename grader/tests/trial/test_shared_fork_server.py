@@ -9,7 +9,7 @@ import subprocess
 
 import pytest
 
-from grader.common.interpreter import interpreter
+from grader.common.interpreter import Start, interpreter
 from grader.errors import MachineError
 from grader.ros import installation
 from grader.ros.installation import find_ros
@@ -44,6 +44,12 @@ fork_server.main()
 """
 
 
+def python(code: str) -> Start:
+    """Return the start of a Python that imports from the ROS 2, as a fork server does."""
+    env = installation.environment(find_ros(), home=fork_client.NOBODYS_HOME, domain=None)
+    return interpreter("-c", code, env=env, searches=True)
+
+
 def test_the_conductor_and_the_node_are_forks_of_one_import() -> None:
     with Trial(WALL, with_turtlesim(find_ros()), in_cell=True, share=True) as trial:
         trial.await_ready()
@@ -57,15 +63,14 @@ def test_nodes_check_the_values_in_messages() -> None:
 
 
 def test_conductors_do_not_check_the_values_in_messages() -> None:
-    env = installation.environment(find_ros(), home=fork_client.NOBODYS_HOME, domain=None)
-    start = interpreter("-c", CHECKED, env=env)
+    start = python(CHECKED)
     done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False, timeout=HANG_S)
     assert done.stdout == "5\n", done.stderr
 
 
 def test_a_server_for_conductors_has_their_environment_although_it_is_a_fork_of_the_one_for_nodes() -> None:
     ours, theirs = socket.socketpair()
-    start = interpreter("-c", FORKED)
+    start = python(FORKED)
     with ours, theirs:
         done = subprocess.run(
             start.argv, env=start.env, stdout=theirs.fileno(), stderr=subprocess.PIPE, check=False, timeout=HANG_S
