@@ -164,8 +164,12 @@ def has_threads(evidence: Evidence) -> bool:
 
 
 def waits_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a callback, or a function that it calls, waits for a response or spins, else None."""
-    return next((wait.cause for wait in waits_in_callbacks(evidence) if wait.deadlock), None)
+    """Return the cause if a callback, or a function that it calls, waits for a response or spins, else None.
+
+    A wait that may be endless comes first.
+    """
+    waits = [wait for wait in waits_in_callbacks(evidence) if wait.needs_thread]
+    return min(waits, key=lambda wait: wait.limited).cause if waits else None
 
 
 def _really_waits(call: ast.Call, name: str, written: str, module: Module, *, in_loop: bool) -> bool:

@@ -144,10 +144,21 @@ def test_a_sleep_in_a_callback_is_told_from_a_deadlock(step: str, *, found: bool
 )
 def test_a_wait_with_a_timeout_is_no_deadlock(step: str, words: str) -> None:
     source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
-    package = evidence(package=submission({NODE_FILE: source}))
-    (wait,) = waits_in_callbacks(package)
+    (wait,) = waits_in_callbacks(evidence(package=submission({NODE_FILE: source})))
     assert wait.cause.text.startswith(words)
-    assert waits_in_callback(package) is None
+    assert not wait.deadlock
+
+
+def test_an_endless_wait_is_named_before_one_with_a_timeout() -> None:
+    step = "rclpy.spin_once(self, timeout_sec=0.1)"
+    source = NODE.format(init="pass", callback="self.step", step=step, ask="pass", main="pass")
+    cause = waits_in_callback(evidence(package=submission({NODE_FILE: source})))
+    assert cause is not None
+    assert "until its timeout" in cause.text
+    source = source.replace(step, f"{step}; self.pen.call(request)")
+    cause = waits_in_callback(evidence(package=submission({NODE_FILE: source})))
+    assert cause is not None
+    assert cause.text.startswith("call waits")
 
 
 @pytest.mark.parametrize(
