@@ -24,6 +24,22 @@ def until(there: Callable[[], bool]) -> None:
         time.sleep(_POLL_S)
 
 
+def only_child(pid: int) -> int:
+    """Wait until a process has exactly one child process, and return the id of the child process.
+
+    The child process may not have been started yet, and others may still be ending.
+    """
+    file = Path(f"/proc/{pid}/task/{pid}/children")
+    found: list[str] = []
+
+    def one() -> bool:
+        found[:] = file.read_text("ascii").split()
+        return len(found) == 1
+
+    until(one)
+    return int(found[0])
+
+
 def until_gone(pid: int) -> None:
     """Wait until a process has ended. If the process is a child of this process, it may be waited for afterwards."""
     try:

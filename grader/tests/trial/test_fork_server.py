@@ -22,7 +22,7 @@ from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import family
 from grader.sandbox.user import cell_user
 from grader.tests.trial.forks import WALL, children, forks, kill, mapped, run
-from grader.tests.waiting import HANG_S, until_gone
+from grader.tests.waiting import HANG_S, only_child, until_gone
 from grader.trial import fork_client
 from grader.trial.trial import Trial
 
@@ -130,8 +130,8 @@ def test_signals_to_their_process_group_reach_no_other_trial(*, share: bool) -> 
     with Trial(WALL, with_turtlesim(find_ros()), in_cell=True, share=share) as trial:
         trial.await_ready()
         _, conductor, forks_nodes = trial._conductor.pids()
-        supervisor = children(forks_nodes)[0]
-        for pid in (conductor, *children(supervisor)):
+        supervisor = only_child(forks_nodes)
+        for pid in (conductor, only_child(supervisor)):
             assert os.getpgid(pid) == os.getsid(pid) == pid
 
 
@@ -139,8 +139,8 @@ def test_a_node_ends_with_the_processes_that_fork_and_supervise_it() -> None:
     with Trial(WALL, with_turtlesim(find_ros()), in_cell=True) as trial:
         trial.await_ready()
         forks_nodes = trial._conductor.pids()[2]
-        supervisor = children(forks_nodes)[0]
-        node = children(supervisor)[0]
+        supervisor = only_child(forks_nodes)
+        node = only_child(supervisor)
         os.kill(forks_nodes, signal.SIGKILL)
         until_gone(supervisor)
         until_gone(node)

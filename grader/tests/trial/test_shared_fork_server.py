@@ -15,8 +15,8 @@ from grader.ros import installation
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
-from grader.tests.trial.forks import WALL, children, forks, kill, mapped, run
-from grader.tests.waiting import HANG_S, until_gone
+from grader.tests.trial.forks import WALL, forks, kill, mapped, run
+from grader.tests.waiting import HANG_S, only_child, until_gone
 from grader.trial import fork_client
 from grader.trial.trial import Trial
 
@@ -84,7 +84,7 @@ def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_starte
         assert run("#!/usr/bin/env python3\nprint('again')\n", share=True).stdout.text == "again\n"
         server = fork_client.nodes(with_turtlesim(find_ros()))
         assert server._process is not None
-        (forked,) = children(server._process.pid)
+        forked = only_child(server._process.pid)
         assert os.getsid(forked) == forked, "a signal to the process group of one server reaches the other"
         kill(server)
         until_gone(forked)

@@ -15,7 +15,8 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from grader.tests.both_worlds import OUR_TURTLESIM, REAL_TURTLESIM
-from grader.tests.ros2.world import World, children, world
+from grader.tests.ros2.world import World, world
+from grader.tests.waiting import only_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -78,7 +79,7 @@ def test_what_keeps_turtlesim_from_starting_says_what_to_do(alone: World, variab
 
 def test_a_simulator_outlives_its_view(alone: World) -> None:
     simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
-    (view,) = children(program(simulator))
+    view = only_child(program(simulator))
     os.kill(view, signal.SIGKILL)
     simulator.wait_for("The view has ended. turtlesim continues without it.")
     assert alone.run("ros2 topic echo /turtle1/pose --once").code == 0
@@ -88,7 +89,7 @@ def test_a_simulator_outlives_its_view(alone: World) -> None:
 def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
     simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     whole(simulator)
-    (view,) = children(program(simulator))
+    view = only_child(program(simulator))
     os.kill(program(simulator), signal.SIGKILL)
     simulator.process.wait()
     ended = os.pidfd_open(view)
