@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.report.pages import opened, turtle
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -15,9 +16,12 @@ if TYPE_CHECKING:
 
 
 def stop_clock(page: Page) -> None:
-    """Stop the clock of the page. After that, the clock advances only when `page.clock.run_for` is called."""
+    """Stop the clock of the page. After that, the clock advances only when `page.clock.run_for` is called.
+
+    Until it is paused, the clock runs, and it cannot be paused at a time that has passed.
+    """
     page.clock.install(time=0)
-    page.clock.pause_at(1)
+    page.clock.pause_at(HANG_S)
 
 
 def test_the_replay_moves_the_turtle_at_the_chosen_speed_and_ends(page: Page, pages: Path, problems: list[str]) -> None:
