@@ -99,14 +99,15 @@ def test_a_message_is_plotted_with_all_its_numbers(whole: Page) -> None:
 def test_rqt_console_shows_what_nodes_log_and_filters_it(driven: World, browser: Browser) -> None:
     for tab in page_of(driven, browser, "ros2 run rqt_console rqt_console"):
         log = tab.get_by_role("group", name="The log messages as a table")
-        node = driven.start(DRAW_CIRCLE, "Draw")
-        log.get_by_text("Draw circle node has been started").wait_for()
+        # The node of the fixture has the same text, and its message is kept for 10 s for nodes that subscribe later.
+        node = driven.start(f"{DRAW_CIRCLE} --ros-args -r __node:=second", "Draw")
+        log.get_by_role("row", name="Info second Draw circle node has been started").wait_for()
         node.stop()
         driven.run("ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, y: 2.0, name: anna}'")
         log.get_by_text("Spawning turtle [anna]").wait_for()
         driven.run("ros2 service call /kill turtlesim/srv/Kill '{name: anna}'")
         tab.get_by_label("Node", exact=True).select_option("turtlesim")
-        log.get_by_text("Draw circle node has been started").wait_for(state="detached")
+        log.get_by_text("Draw circle node has been started").first.wait_for(state="detached")
         driven.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 50.0}'")
         warned = log.get_by_role("row", name="Warn turtlesim Oh no! I hit the wall!")
         warned.first.wait_for()
