@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> None:
     host, _, path = live(system)
-    with connect(path, origin=Origin(f"http://{host}")) as link:
+    with connect(path, origin=Origin(f"http://{host}"), open_timeout=HANG_S) as link:  # the view may be starting
         assert '"kind":"all"' in str(link.recv())
 
 
@@ -45,7 +45,7 @@ def test_a_connection_with_a_wrong_origin_host_or_token_is_refused(system: World
     name = f"{wrong.pop('name')}:{port}" if "name" in wrong else host
     requested = {"origin": f"http://{name}", "sock": socket.create_connection(("127.0.0.1", int(port))), **wrong}
     path = path.replace(host, name).replace(token, str(requested.pop("token", token)))
-    with pytest.raises(InvalidStatus) as refused, connect(path, **requested):
+    with pytest.raises(InvalidStatus) as refused, connect(path, **requested, open_timeout=HANG_S):
         pass
     assert refused.value.response.status_code == 403
 

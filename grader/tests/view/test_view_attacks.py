@@ -56,9 +56,9 @@ rclpy.spin(node)
 
 @contextmanager
 def linked(world: World) -> Iterator[ClientConnection]:
-    """Connect to the live view as its page does."""
+    """Connect to the live view as its page does. The view may still be starting."""
     host, _, path = live(world)
-    with connect(path, origin=Origin(f"http://{host}"), max_size=LARGEST) as link:
+    with connect(path, origin=Origin(f"http://{host}"), max_size=LARGEST, open_timeout=HANG_S) as link:
         yield link
 
 
