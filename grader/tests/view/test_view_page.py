@@ -67,7 +67,8 @@ def test_a_page_that_is_opened_late_sees_what_was_drawn_before(page: Page, brows
     system.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'")
     until(lambda: drawn(page) > 400)
     late = opened(browser, address(system))
-    assert drawn(late) == pytest.approx(drawn(page), rel=0.05)
+    # The page is live before it receives what was drawn.
+    until(lambda: drawn(late) == pytest.approx(drawn(page), rel=0.05))
     late.close()
 
 
@@ -87,8 +88,8 @@ def test_keys_drive_while_they_are_held(page: Page, system: World) -> None:
     page.keyboard.up("ArrowUp")
     echo.wait_for("0.0,0.0,0.0,0.0,0.0,2.0", times=2)
     page.keyboard.up("ArrowLeft")
-    echo.wait_for(STANDS)
-    assert echo.lines[-1] == STANDS
+    # On a busy machine, the view may have let go of the keys for a moment before, because the page sent nothing.
+    until(lambda: echo.lines[-1] == STANDS)
     assert drawn(page) > 100
     echo.stop()
 
