@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Module
 
-
 RESPONSES = ("call", "send_goal", "cancel_goal", "get_result")
 """Methods of service clients, action clients and goal handles that wait for the response.
 
@@ -149,7 +148,7 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
                 if isinstance(node.func, ast.Call):
                     name, written = _function_named(node.func, module), last_name(node.func)
                 if name and _really_waits(node, name, written, module, in_loop=id(node) in looped):
-                    found.append(Wait(name, written, where, limited=_has_timeout(node, name, module)))
+                    found.append(Wait(name, written, where, limited=has_timeout(node, name, module)))
     places = {module.file: index for index, module in enumerate(modules)}
     return sorted(set(found), key=lambda wait: (places[wait.where.file], wait.where.line or 0))
 
@@ -174,7 +173,7 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
 
 def _really_waits(call: ast.Call, name: str, written: str, module: Module, *, in_loop: bool) -> bool:
     if name in SERVERS:
-        return in_loop or not _has_timeout(call, name, module)
+        return in_loop or not has_timeout(call, name, module)
     if name in SPINS and number(_timeout(call, name), module.names) == 0.0:
         return False
     if written != "call":
@@ -204,7 +203,7 @@ def clients_of(modules: Iterable[Module]) -> frozenset[str]:
     )
 
 
-def _has_timeout(call: ast.Call, name: str, module: Module) -> bool:
+def has_timeout(call: ast.Call, name: str, module: Module) -> bool:
     """Return whether a call to this function ends at a timeout. None and negative numbers mean no timeout."""
     timeout = _timeout(call, name)
     if timeout is None or (isinstance(timeout, ast.Constant) and timeout.value is None):

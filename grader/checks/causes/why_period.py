@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.why_rate import (
     callbacks_of,
-    is_repeated,
     may_send,
     reaches,
     why_several_calls,
-    why_sleep_in_callback,
 )
 from grader.checks.causes.why_silent import calls_method
+from grader.checks.causes.why_sleep import is_repeated, why_sleep_in_callback
 from grader.checks.edit import at
 from grader.submission.constants import dotted, written
 from grader.submission.constants import number as constant

@@ -1,6 +1,6 @@
-"""Explain why messages or log lines arrive too often, too rarely or too late, for example because a callback sleeps.
+"""Explain why messages or log lines arrive too often, too rarely or too late, for example because a loop has no pause.
 
-grader.checks.causes.why_period explains wrong periods of timers.
+grader.checks.causes.why_period explains wrong periods of timers, and grader.checks.causes.why_sleep explains sleeps.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.each_time import each_time, evaluated
-from grader.checks.causes.waiting import SPINS, has_threads
+from grader.checks.causes.waiting import SPINS
 from grader.common.words import a_list
 from grader.submission.constants import dotted, evaluate, number
 from grader.submission.where import Where
@@ -32,8 +32,6 @@ SEVERAL = 0.1
 most this fraction."""
 PAUSES = ("sleep", "sleep_for", "sleep_until", *SPINS, "wait", "get", "join", "input")
 """Functions and methods whose purpose is to wait."""
-ONCE = ("__init__", "main")
-"""Functions that run once."""
 FRAME_S = 0.016
 """The duration of a turtlesim frame (s). turtlesim publishes the pose once per frame."""
 EACH_FRAME = ("pose", "color_sensor")
@@ -67,7 +65,7 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
 
 def _sets_that_rate(evidence: Evidence, call: str, mean_s: float) -> bool:
     """Return whether a timer or a sleep may be the reason for this mean interval (s)."""
-    lengths = [_length(sleep) for sleep in evidence.code.calls("sleep")]
+    lengths = [length_of(sleep) for sleep in evidence.code.calls("sleep")]
     lengths += [
         number(timer.argument(0, "timer_period_sec"), timer.module.names)
         for timer in evidence.code.calls("create_timer")
@@ -79,7 +77,12 @@ def _sets_that_rate(evidence: Evidence, call: str, mean_s: float) -> bool:
 def called_by(maker: Call, place: int) -> list[ast.FunctionDef]:
     """Return the functions in the module that may be the callback, the argument with this index."""
     name = (dotted(maker.argument(place, "callback") or ast.Constant(0)) or "").rpartition(".")[2]
-    return [each for each in maker.module.nodes if isinstance(each, ast.FunctionDef) and each.name == name]
+    return named(maker.module, name)
+
+
+def named(module: Module, name: str) -> list[ast.FunctionDef]:
+    """Return the functions of the module with this name."""
+    return [each for each in module.nodes if isinstance(each, ast.FunctionDef) and each.name == name]
 
 
 def may_send(timer: Call, *calls: str) -> bool:
@@ -122,7 +125,7 @@ def reaches(module: Module, part: ast.AST, *calls: str) -> bool:
 
 def why_publishers_grow(evidence: Evidence) -> Cause | None:
     """Return the cause if a callback creates a publisher, else None."""
-    found = _made_in_callback(evidence, "create_publisher", always=True)
+    found = made_in_callback(evidence, "create_publisher", always=True)
     if found is None:
         return None
     name, where = found
@@ -135,7 +138,7 @@ def why_timers_grow(evidence: Evidence) -> Cause | None:
 
     A callback that also stops a timer is not reported, because it may replace its own timer.
     """
-    found = _made_in_callback(evidence, "create_timer", always=True)
+    found = made_in_callback(evidence, "create_timer", always=True)
     if found is None:
         return None
     name, where = found
@@ -144,52 +147,6 @@ def why_timers_grow(evidence: Evidence) -> Cause | None:
         return None
     text = f"{name} creates a new timer each time it is called. One timer is enough, because it repeats."
     return Cause("timer-in-callback", text, where)
-
-
-def why_sleep_in_callback(evidence: Evidence, period_s: float) -> Cause | None:
-    """Return the cause if a callback sleeps for at least a period (s), else None.
-
-    In a loop, a shorter sleep is enough. A length that is not known from the source is not.
-    """
-    found = _made_in_callback(evidence, "sleep")
-    sleeps = [call for call in evidence.code.calls("sleep") if found is not None and call.where == found[1]]
-    if found is None or not any((_length(call) or 0.0) >= period_s or _in_loop(call) for call in sleeps):
-        return None
-    text = "While a method sleeps, a node with one thread does nothing else."
-    return Cause("sleep-in-callback", text, found[1])
-
-
-def why_rate_in_callback(evidence: Evidence) -> Cause | None:
-    """Return the cause if a node with one thread sleeps with a Rate, in a callback or elsewhere, else None."""
-    if not evidence.code.calls("create_rate"):
-        return None
-    found = _made_in_callback(evidence, "sleep")
-    if has_threads(evidence) or found is None or found[1] not in [sleep.where for sleep in _sleeps_of_rates(evidence)]:
-        return _rate_without_spin(evidence)
-    text = (
-        "The method sleep of a Rate returns only after rclpy.spin has called the timer of the Rate, "
-        "but rclpy.spin waits for this callback."
-    )
-    return Cause("sleep-in-callback", text, found[1])
-
-
-def _rate_without_spin(evidence: Evidence) -> Cause | None:
-    """Return the cause if the node sleeps with a Rate, but no other thread can spin the node, else None."""
-    if has_threads(evidence):
-        return None
-    for sleep in _sleeps_of_rates(evidence):
-        text = (
-            "The method sleep of a Rate returns only while another thread spins the node, and this program has no "
-            "other thread. A timer does not need an additional thread."
-        )
-        return Cause("no-spin", text, sleep.where)
-    return None
-
-
-def _sleeps_of_rates(evidence: Evidence) -> list[Call]:
-    """Return the calls to a method named sleep without an argument, such as that of a Rate."""
-    calls = evidence.code.calls("sleep")
-    return [call for call in calls if dotted(call.node.func) not in (None, "sleep") and not call.node.args]
 
 
 def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
@@ -230,17 +187,6 @@ def _most(body: list[ast.stmt], call: str) -> int:
     return amount
 
 
-def is_repeated(call: Call) -> bool:
-    """Return whether a call is in a loop, or in a function that may be called again and again."""
-    functions = (each for each in call.module.nodes if isinstance(each, ast.FunctionDef) and each.name not in ONCE)
-    return _in_loop(call) or any(call.node in ast.walk(each) for each in functions)
-
-
-def _in_loop(call: Call) -> bool:
-    loops = (each for each in call.module.nodes if isinstance(each, ast.While | ast.For))
-    return any(call.node in ast.walk(each) for each in loops)
-
-
 def late_cause(evidence: Evidence) -> str:
     """Return a sentence about a possible reason why the first message or line is late, or an empty string."""
     if evidence.code.calls("sleep"):
@@ -249,11 +195,12 @@ def late_cause(evidence: Evidence) -> str:
     return "The wait for a service (wait_for_service) may be the reason." if waits else ""
 
 
-def _length(sleep: Call) -> float | None:
+def length_of(sleep: Call) -> float | None:
+    """Return the length (s) of a call to sleep, or None if it is not known from the source."""
     return number(sleep.argument(0, "secs"), sleep.module.names)
 
 
-def _made_in_callback(evidence: Evidence, maker: str, *, always: bool = False) -> tuple[str, Where] | None:
+def made_in_callback(evidence: Evidence, maker: str, *, always: bool = False) -> tuple[str, Where] | None:
     """Return the name of a callback that calls `maker` and the place of the call, or None.
 
     With `always`, the callback must call `maker` each time. In `if self.timer is None`, it may do so only once.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.callback_code import inside
 from grader.checks.causes.timers import timer_fault
-from grader.checks.causes.waiting import SPINS
+from grader.checks.causes.waiting import SPINS, has_timeout
 from grader.checks.causes.why_blocked import WAKES, not_spun, only_waits, why_blocked
 from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_inactive import never_activated
@@ -79,10 +79,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        # In rclpy.spin_once, the timeout follows the node and the executor. In Executor.spin_once, it comes first.
-        of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
-        limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
-        if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):
+        if not has_timeout(call.node, "spin_once", call.module):
             text = "spin_once waits for something to do, but this node has no timer. Use timeout_sec to limit the wait."
             return Cause("spin-once-waits", text, call.where)
     return None

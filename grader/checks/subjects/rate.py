@@ -14,9 +14,9 @@ from grader.checks.causes.why_rate import (
     late_cause,
     why_often,
     why_publishers_grow,
-    why_rate_in_callback,
     why_timers_grow,
 )
+from grader.checks.causes.why_sleep import why_rate_in_callback
 from grader.checks.causes.why_stopped import CANCELS, cancelled, stopped_by_exit, why_stopped
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed

@@ -20,10 +20,6 @@ SILENT_S = 2.0
 """A node is considered to hang if it does nothing for this time (s) after a response."""
 ALSO_S = 0.05
 """Anything that arrives within this time (s) after a response may have been sent before the response."""
-SAME_GROUP = (
-    "Several threads do not help here. By default, callbacks of the same callback group never run at the same time, "
-    "so nothing receives the response: a deadlock. Use call_async, or give the client its own callback group."
-)
 
 
 def never_waits(evidence: Evidence, _: NoParams) -> Finding:
@@ -36,8 +32,7 @@ def never_waits(evidence: Evidence, _: NoParams) -> Finding:
     if finding is not None:
         return finding
     if waits and _hangs(evidence):
-        cause = Cause("waits-in-callback", SAME_GROUP, waits[0].where)
-        return failed("After a response, the node did nothing more.", EXPECTED, cause)
+        return failed("After a response, the node did nothing more.", EXPECTED, _same_group(waits[0]))
     return passed("Other threads receive the responses for which a callback waits." if waits else EXPECTED)
 
 
@@ -54,8 +49,16 @@ def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
     blocked = next((wait for wait in waits if in_default_group(evidence, wait)), None)
     if blocked is None:
         return None
-    cause = Cause("waits-in-callback", SAME_GROUP, blocked.where)
-    return failed(f"A callback {blocked.observed}.", EXPECTED, cause)
+    return failed(f"A callback {blocked.observed}.", EXPECTED, _same_group(blocked))
+
+
+def _same_group(wait: Wait) -> Cause:
+    until = "before the timeout" if wait.limited else "at all: a deadlock"
+    text = (
+        "Several threads do not help here. By default, callbacks of the same callback group never run at the same "
+        f"time, so nothing receives the response {until}. Use call_async, or give the client its own callback group."
+    )
+    return Cause("waits-in-callback", text, wait.where)
 
 
 def _hangs(evidence: Evidence) -> bool:

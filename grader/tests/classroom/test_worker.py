@@ -123,6 +123,20 @@ def runs(pid: int) -> bool:
         return False
 
 
+def test_only_the_workers_have_one_memory_pool_and_the_processes_of_a_trial_have_the_usual_environment(
+    server: ForkServer,
+) -> None:
+    with closing(Worker()) as one:
+        assert refuses(one)
+        assert server._process is not None
+        limited = {
+            "worker" if "grader.classroom.worker" in command else "another"
+            for pid, command in {server._process.pid: "grader.classroom.worker", **below(server._process.pid)}.items()
+            if b"MALLOC_ARENA_MAX=1" in Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+        }
+    assert limited == {"worker"}
+
+
 def test_a_server_that_was_killed_is_started_again(server: ForkServer) -> None:
     with closing(Worker()) as one:
         assert refuses(one)

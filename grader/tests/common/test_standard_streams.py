@@ -13,6 +13,7 @@ from grader.common.standard_streams import has_signs
 from grader.tests.both_worlds import SOURCED_ENV, of_our_ros2
 
 BIN = Path(sys.executable).parent
+SOLUTION = Path(__file__).parents[3] / "solutions" / "03-circle-publisher" / "my_robot_controller"
 ASCII_LOCALE = {"LC_ALL": "POSIX", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
 COMMANDS = ("grader --help", "grader status", "grader env", pytest.param("ros2 pkg list", marks=of_our_ros2))
 ROS2_HELP = pytest.param("ros2 --help", marks=of_our_ros2)
@@ -62,7 +63,7 @@ def test_messages_that_cannot_be_written_are_no_error(tmp_path: Path, command: s
 
 
 def test_a_report_arrives_although_the_progress_cannot_be_written(tmp_path: Path) -> None:
-    line = "grader check solutions/03-circle-publisher/my_robot_controller"
+    line = f"grader check '{SOLUTION}'"
     assert run(f"{line} 2> /dev/full", tmp_path).stdout == run(line, tmp_path).stdout != ""
 
 

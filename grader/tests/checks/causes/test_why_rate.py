@@ -8,10 +8,10 @@ from grader.checks.causes.why_rate import (
     FRAME_S,
     why_often,
     why_publishers_grow,
-    why_rate_in_callback,
     why_several_calls,
     why_timers_grow,
 )
+from grader.checks.causes.why_sleep import why_rate_in_callback
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 

@@ -56,10 +56,14 @@ def test_a_callback_that_sends_in_some_of_its_calls_is_told_in_how_many(timer: s
     ("timer", "rest", "blamed"),
     [
         ("0.5", "time.sleep(1.0)", True),
+        ("0.5", "time.sleep(0.5)", True),
         ("0.2", "time.sleep(0.45)", True),
         ("0.5", "time.sleep(0.02)", False),
         ("0.5", "for _ in range(50):\n            time.sleep(0.02)", True),
+        ("0.5", "for _ in range(50):\n            time.sleep(self.rest)", False),
         ("0.5", "time.sleep(self.rest)", False),
+        ("0.5", "time.sleep(0.3); time.sleep(0.3)", True),
+        ("0.5", "time.sleep(0.3); self.other()\n\n    def other(self):\n        time.sleep(0.3)", False),
     ],
 )
 def test_only_a_sleep_that_is_long_enough_explains_messages_that_are_too_rare(

@@ -51,8 +51,15 @@ def test_a_wait_is_found_before_the_build_unless_the_node_has_threads() -> None:
     assert NEVER_WAITS.judge_early(evidence(None, submission({NODE_FILE: source + THREADS})), {}) is None
 
 
-def test_with_threads_the_node_may_wait_if_it_goes_on() -> None:
-    assert judged(WAITS, more=THREADS).status is Status.PASSED
+@pytest.mark.parametrize("line", [WAITS, "        self.pen.call(request, timeout_sec=1.0)"])
+def test_with_threads_the_node_may_wait_if_it_goes_on(line: str) -> None:
+    assert judged(line, more=THREADS).status is Status.PASSED
+
+
+@pytest.mark.parametrize(("timeout", "words"), [("", "at all: a deadlock."), (", 1.0", "before the timeout.")])
+def test_in_one_group_a_wait_with_a_timeout_is_no_deadlock(timeout: str, words: str) -> None:
+    cause = of_node(PLAIN, TIMER, f"        self.pen.call(request{timeout})").cause
+    assert f"so nothing receives the response {words} Use call_async" in cause
 
 
 def test_with_threads_in_one_group_the_node_hangs() -> None:
