@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -50,18 +51,23 @@ OTHER_CALLS = frozenset({"subprocess", "self", "super", "cls"})
 class Wait:
     """A wait in a callback: `name` is the function that waits, and `written` is its name or alias in the source.
 
-    `limited` is whether the call has a timeout.
+    `timeout_s` is the timeout of the call (s): infinite if it has none, and None if it is not known from the source.
     """
 
     name: str
     written: str
     where: Where
-    limited: bool = False
+    timeout_s: float | None = math.inf
 
     @property
     def needs_thread(self) -> bool:
         """Whether the node waits for a response, or spins. If it has one thread, it receives no response meanwhile."""
         return self.name in (LOOP, *RESPONSES, *SPINS)
+
+    @property
+    def limited(self) -> bool:
+        """Whether the wait ends at a timeout."""
+        return self.timeout_s != math.inf
 
     @property
     def deadlock(self) -> bool:
@@ -148,7 +154,7 @@ def waits_in_callbacks(evidence: Evidence) -> list[Wait]:
                 if isinstance(node.func, ast.Call):
                     name, written = _function_named(node.func, module), last_name(node.func)
                 if name and _really_waits(node, name, written, module, in_loop=id(node) in looped):
-                    found.append(Wait(name, written, where, limited=has_timeout(node, name, module)))
+                    found.append(Wait(name, written, where, timeout_s(node, name, module)))
     places = {module.file: index for index, module in enumerate(modules)}
     return sorted(set(found), key=lambda wait: (places[wait.where.file], wait.where.line or 0))
 
@@ -171,10 +177,22 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
     return min(waits, key=lambda wait: wait.limited).cause if waits else None
 
 
+def long_wait_in_callback(evidence: Evidence, period_s: float) -> Cause | None:
+    """Return the cause if a callback waits for a response, or spins, and its timeout is at least a period (s).
+
+    Otherwise, return None. In a node with several threads, such a wait need not delay anything. A timeout that is not
+    known does not count.
+    """
+    if has_threads(evidence):
+        return None
+    waits = (wait for wait in waits_in_callbacks(evidence) if wait.needs_thread and wait.limited)
+    return next((wait.cause for wait in waits if (wait.timeout_s or 0.0) >= period_s), None)
+
+
 def _really_waits(call: ast.Call, name: str, written: str, module: Module, *, in_loop: bool) -> bool:
     if name in SERVERS:
-        return in_loop or not has_timeout(call, name, module)
-    if name in SPINS and number(_timeout(call, name), module.names) == 0.0:
+        return in_loop or timeout_s(call, name, module) == math.inf
+    if name in SPINS and timeout_s(call, name, module) == 0.0:
         return False
     if written != "call":
         return True
@@ -203,13 +221,16 @@ def clients_of(modules: Iterable[Module]) -> frozenset[str]:
     )
 
 
-def has_timeout(call: ast.Call, name: str, module: Module) -> bool:
-    """Return whether a call to this function ends at a timeout. None and negative numbers mean no timeout."""
+def timeout_s(call: ast.Call, name: str, module: Module) -> float | None:
+    """Return the timeout (s) of a call to the function `name`: infinite if it has none, and None if it is not known.
+
+    In rclpy, None and negative numbers mean no timeout.
+    """
     timeout = _timeout(call, name)
     if timeout is None or (isinstance(timeout, ast.Constant) and timeout.value is None):
-        return False
+        return math.inf
     limit = number(timeout, module.names)
-    return limit is None or limit >= 0.0
+    return math.inf if limit is not None and limit < 0.0 else limit
 
 
 def _timeout(call: ast.Call, name: str) -> ast.expr | None:

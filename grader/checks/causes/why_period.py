@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.waiting import long_wait_in_callback
 from grader.checks.causes.why_rate import (
     callbacks_of,
     may_send,
@@ -64,9 +65,9 @@ def _why_mean(evidence: Evidence, noun: str, call: str, mean: float, rate_hz: fl
         if period is not None and abs(period - mean) <= SAME * mean:
             return Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, rate_hz))
     shortest = min([1.0 / rate_hz, *(period for _, period in timers if period)])
-    asleep = why_sleep_in_callback(evidence, shortest) if mean * rate_hz > 1.0 else None
-    if asleep is not None:
-        return asleep
+    delays = why_sleep_in_callback(evidence, shortest) or long_wait_in_callback(evidence, shortest)
+    if delays is not None and mean * rate_hz > 1.0:
+        return delays
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
         if length is not None and abs(length - mean) <= SAME * mean and is_repeated(sleep):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import ast
+import math
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.callback_code import inside
 from grader.checks.causes.timers import timer_fault
-from grader.checks.causes.waiting import SPINS, has_timeout
+from grader.checks.causes.waiting import SPINS, timeout_s
 from grader.checks.causes.why_blocked import WAKES, not_spun, only_waits, why_blocked
 from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_inactive import never_activated
@@ -79,7 +80,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        if not has_timeout(call.node, "spin_once", call.module):
+        if timeout_s(call.node, "spin_once", call.module) == math.inf:
             text = "spin_once waits for something to do, but this node has no timer. Use timeout_sec to limit the wait."
             return Cause("spin-once-waits", text, call.where)
     return None

@@ -74,6 +74,27 @@ def test_only_a_sleep_that_is_long_enough_explains_messages_that_are_too_rare(
     assert (found.diagnosis == "sleep-in-callback") == blamed
 
 
+@pytest.mark.parametrize(
+    ("line", "blamed"),
+    [
+        ("rclpy.spin_once(self, timeout_sec=1.0)", True),
+        ("rclpy.spin_until_future_complete(self, future, timeout_sec=0.6)", True),
+        ("self.pen.call(request, 1.0)", True),
+        ("rclpy.spin_once(self, timeout_sec=0.1)", False),
+        ("rclpy.spin_once(self, timeout_sec=self.limit)", False),
+        ("rclpy.spin_once(self)", False),
+        ("rclpy.spin_once(self, timeout_sec=1.0); MultiThreadedExecutor()", False),
+        ("self.pen.wait_for_service(timeout_sec=1.0)", False),
+    ],
+)
+def test_a_wait_with_a_long_timeout_explains_messages_that_are_too_rare(line: str, *, blamed: bool) -> None:
+    waits = ("    def send(self):", f"    def send(self):\n        {line}")
+    found = rate("one hertz", waits)
+    assert ("waits inside a callback" in found.cause) == blamed
+    assert (str(found.where) == f"{NODE_FILE}:13") == blamed
+    assert "waits inside a callback" not in rate("four hertz", waits).cause
+
+
 REPORTS = ("    def send(self):", "    def report(self):\n        print(3)\n\n    def send(self):")
 
 
