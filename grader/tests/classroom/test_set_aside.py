@@ -7,7 +7,9 @@ import os
 import shutil
 import struct
 import subprocess
+import tempfile
 import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -28,8 +30,7 @@ from grader.tests.classroom.a_class import STEP, grade, rows
 from grader.tests.lacking import need_reachable_python
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
+    from collections.abc import Callable, Iterator
 
 EXERCISE = find_exercise(STEP)
 XML = ("p/package.xml", b"<package/>")
@@ -174,19 +175,23 @@ passed_over([folder], folder)
 """
 
 
-def test_a_folder_without_permission_is_reported(tmp_path: Path) -> None:
+@pytest.fixture
+def entered_by_all() -> Iterator[Path]:
+    """Return a folder that other users can enter, unlike pytest's own folders."""
+    with tempfile.TemporaryDirectory(prefix="set-aside-") as named:
+        Path(named).chmod(0o755)
+        yield Path(named)
+
+
+def test_a_folder_without_permission_is_reported(entered_by_all: Path) -> None:
     need_reachable_python()
-    a_closed_folder(tmp_path)
+    a_closed_folder(entered_by_all)
     start = interpreter("-c", LOOK)
     # root can enter every folder
     as_somebody = ["setpriv", "--reuid=65534", "--clear-groups"] if os.getuid() == 0 else []
-    for folder in (tmp_path, *tmp_path.parents):
-        if os.getuid() == 0 and folder.is_relative_to("/tmp/"):
-            folder.chmod(0o755)
-    done = subprocess.run(
-        [*as_somebody, *start.argv, str(tmp_path), STEP], env=start.env, capture_output=True, text=True, check=False
-    )
-    (tmp_path / "odd").chmod(0o755)
+    command = [*as_somebody, *start.argv, str(entered_by_all), STEP]
+    done = subprocess.run(command, env=start.env, capture_output=True, text=True, check=False)
+    (entered_by_all / "odd").chmod(0o755)
     assert "odd True" in done.stdout, done.stderr
     assert "because of its permissions" in done.stdout
 
