@@ -245,7 +245,7 @@ def test_no_descriptor_stays_open(package: Path) -> None:
     before = len(descriptors())
     for _ in range(3):
         open_submission(package)
-    assert len(descriptors()) == before
+    assert len(descriptors()) <= before  # an object of an earlier test may have been closed
 
 
 def test_hundreds_of_files_are_read(package: Path) -> None:
