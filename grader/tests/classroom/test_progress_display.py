@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
 
+from grader.classroom import progress_display
 from grader.classroom.progress_display import Lines, Table, estimate, plain, screen, summary
 from grader.classroom.results import Result
 from grader.tests.report.hostile import ODD
@@ -53,21 +55,26 @@ def test_printed_text_controls_neither_terminal_nor_ci(text: str) -> None:
     assert "##" not in shown
 
 
-def test_a_terminal_shows_submissions_in_progress_and_a_bar() -> None:
+def test_a_terminal_shows_submissions_in_progress_and_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr(progress_display, "time", SimpleNamespace(monotonic=lambda: now))
     console = Console(file=io.StringIO(), width=140, force_terminal=True, color_system=None)
     table = Table(4, console, several=False)
     table.show(("anna", "03"), "Building with colcon")
+    now = 110.0
     table.show(("[red]ben", "03"), "Running 10 s of simulated time")
     table.finished(result("clara", "failed"))
     table.finished(result("dora", "error"))
+    now = 112.0
     console.print(table.render())
     assert isinstance(console.file, io.StringIO)
     lines = [line.rstrip() for line in console.file.getvalue().splitlines()]
     assert lines[0].startswith("✗ clara: Not passed yet")
     assert lines[1].startswith("! dora: Not finished")
-    assert lines[2].split() == ["anna", "Building", "with", "colcon", "0", "s"]
+    assert lines[2].split() == ["anna", "Building", "with", "colcon", "12", "s"]
     assert lines[3].startswith("[red]ben")
-    assert "2 of 4 · 1 not passed · 1 not judged" in lines[4]
+    assert lines[3].endswith(" 2 s")
+    assert "2 of 4 · 1 not passed · 1 not judged · about 12 s left" in lines[4]
 
 
 def test_a_pipe_or_a_ci_gets_lines(capsys: pytest.CaptureFixture[str]) -> None:
