@@ -34,6 +34,9 @@ STOP_S = 3.0
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
 """The maximum time (s) that is subtracted from a node's time to exit, because the node waited for a processor."""
+MOST_GAP_S = 0.25
+"""The maximum time (s) between two observations of a node that counts as its time to exit. If the grader itself, or the
+whole machine, was paused for longer, the node is not to blame, and may have exited long before this was noticed."""
 
 
 def enlarge(pipe: int) -> int:
@@ -98,7 +101,9 @@ class NodeProcess:
         self._streams = [Stream(launcher.stdout.fileno()), Stream(launcher.stderr.fileno())]
         self._full = FULL * min(enlarge(stream.fd) for stream in self._streams)
         self.pid = 0
-        self._interrupted: float | None = None
+        self._observed: float | None = None
+        """After SIGINT: the time of CLOCK_MONOTONIC at which `_stopping_s` was last called (s)."""
+        self._passed_s = 0.0
         self._waited_before_s = 0.0
         self._took_s: float | None = None
         """The time (s) from SIGINT until the exit of the process was noticed, as `_stopping_s` measured it."""
@@ -184,7 +189,7 @@ class NodeProcess:
         """Send SIGINT, as Ctrl-C does in a terminal."""
         self.scenario_is_over()
         if not self.ended():
-            self._interrupted = time.monotonic()
+            self._observed = time.monotonic()
             self._waited_before_s = self._waited_s()
             self._signal(signal.SIGINT)
 
@@ -217,11 +222,13 @@ class NodeProcess:
 
         Before SIGINT, return None or, if the scenario is over, 0.
         """
-        if self._interrupted is None:
+        if self._observed is None:
             return None if self.ended_itself else 0.0
-        passed_s = time.monotonic() - self._interrupted
+        now = time.monotonic()
+        self._passed_s += min(now - self._observed, MOST_GAP_S)
+        self._observed = now
         waited_s = self._waited_s() - self._waited_before_s
-        return max(0.0, passed_s - min(waited_s, MOST_WAITED_S))
+        return max(0.0, self._passed_s - min(waited_s, MOST_WAITED_S))
 
     def _waited_s(self) -> float:
         return self._guard.waited_s(of=self.pid) if self._guard is not None else 0.0
