@@ -25,6 +25,7 @@ from grader.classroom.worker import Worker
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -109,7 +110,7 @@ def test_a_worker_ends_with_its_owner() -> None:
     worker = Worker()
     pid = worker.process.await_started()
     worker.connection.close()
-    assert worker.process.wait(60) == 0
+    assert worker.process.wait(HANG_S) == 0
     assert not Path(f"/proc/{pid}/task/{pid}/children").exists()
 
 
@@ -152,7 +153,7 @@ def test_all_processes_end_with_the_grader(tmp_path: Path) -> None:
 
 
 def waited(ready: Callable[[], T]) -> T:
-    end = time.monotonic() + 120
+    end = time.monotonic() + HANG_S
     while time.monotonic() < end:
         found = ready()
         if found:

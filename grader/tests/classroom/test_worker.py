@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
-import time
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from grader.classroom.worker import Worker
 from grader.common.interpreter import interpreter
 from grader.exercise.private_checks import Sources
 from grader.sandbox import bubblewrap
+from grader.tests.waiting import HANG_S, until
 from grader.trial.fork_client import ForkServer
 
 if TYPE_CHECKING:
@@ -42,11 +42,13 @@ def refuses(one: Worker) -> bool:
 
 
 def below(pid: int) -> dict[int, str]:
-    """Return the command line of each process below this process."""
+    """Return the command line of each process below this process. Processes that are ending may be left out."""
     found: dict[int, str] = {}
-    for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
-        found[int(child)] = Path(f"/proc/{child}/cmdline").read_text().replace("\0", " ")
-        found |= below(int(child))
+    with suppress(OSError):  # the process has ended
+        for child in map(int, Path(f"/proc/{pid}/task/{pid}/children").read_text().split()):
+            with suppress(OSError):
+                found[child] = Path(f"/proc/{child}/cmdline").read_text().replace("\0", " ")
+                found |= below(child)
     return found
 
 
@@ -64,7 +66,9 @@ def test_workers_share_the_fork_servers_and_leave_them_running(server: ForkServe
         assert workers < set(processes)
         several[0].close()
         assert refuses(several[1])
-        assert set(servers) < set(below(server._process.pid))
+        # While a process ends, the kernel may leave one of its siblings out of the list (proc(5)).
+        process = server._process
+        until(lambda: set(servers) < set(below(process.pid)))
 
 
 def test_workers_do_not_share_random_numbers(server: ForkServer, tmp_path: Path) -> None:
@@ -78,7 +82,7 @@ def test_workers_do_not_share_random_numbers(server: ForkServer, tmp_path: Path)
     server._start = lambda descriptor: started(code, descriptor)
     for _ in range(2):
         with closing(Worker()) as one:
-            one.process.wait(60)
+            one.process.wait(HANG_S)
     assert len(set((tmp_path / "drawn").read_text().split())) == 2
 
 
@@ -109,11 +113,8 @@ def test_the_server_ends_with_its_owner_and_its_workers(server: ForkServer) -> N
         everybody = [server._process.pid, *below(server._process.pid)]
         assert server._requests is not None
         server._requests.close()  # as if the owner had exited
-        server._process.wait(60)
-    until = time.monotonic() + 60
-    while any(runs(pid) for pid in everybody) and time.monotonic() < until:
-        time.sleep(0.02)
-    assert [pid for pid in everybody if runs(pid)] == []
+        server._process.wait(HANG_S)
+    until(lambda: not any(map(runs, everybody)))
 
 
 def runs(pid: int) -> bool:
@@ -129,12 +130,14 @@ def test_only_the_workers_have_one_memory_pool_and_the_processes_of_a_trial_have
     with closing(Worker()) as one:
         assert refuses(one)
         assert server._process is not None
+        commands = {server._process.pid: "grader.classroom.worker", **below(server._process.pid)}
+        workers = {pid for pid, command in commands.items() if "grader.classroom.worker" in command}
         limited = {
-            "worker" if "grader.classroom.worker" in command else "another"
-            for pid, command in {server._process.pid: "grader.classroom.worker", **below(server._process.pid)}.items()
-            if b"MALLOC_ARENA_MAX=1" in Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
+            pid for pid in commands if b"MALLOC_ARENA_MAX=1" in Path(f"/proc/{pid}/environ").read_bytes().split(b"\0")
         }
-    assert limited == {"worker"}
+    assert limited == workers
+    assert len(workers) > 1
+    assert workers < commands.keys() or not bubblewrap.usable()
 
 
 def test_a_server_that_was_killed_is_started_again(server: ForkServer) -> None:
@@ -142,6 +145,6 @@ def test_a_server_that_was_killed_is_started_again(server: ForkServer) -> None:
         assert refuses(one)
         assert server._process is not None
         os.kill(server._process.pid, 9)
-        server._process.wait(60)
+        server._process.wait(HANG_S)
     with closing(Worker()) as another:
         assert refuses(another)
