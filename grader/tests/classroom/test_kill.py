@@ -106,12 +106,17 @@ def assert_nothing_lost(run: Run, out: Path) -> None:
 
 
 def test_no_result_is_lost_when_the_run_is_killed_three_times(undisturbed: Run, tmp_path: Path) -> None:
-    out = tmp_path / "grades"
-    killer = Killer(undisturbed, out, seed=8)
-    killer.until_struck(["grader", "disk", "worker"], within_s=2.0)
-    killer.finish()
-    assert killer.struck == ["grader", "disk", "worker"]
-    assert_nothing_lost(undisturbed, out)
+    blows: list[Blow] = ["grader", "disk", "worker"]
+    for seed in range(8, 14):
+        out = tmp_path / f"grades-{seed}"
+        killer = Killer(undisturbed, out, seed)
+        killer.until_struck(blows, within_s=2.0)
+        killer.finish()
+        assert_nothing_lost(undisturbed, out)
+        # If this process had to wait for a processor, a run may have finished before it was interrupted.
+        if killer.struck == blows:
+            return
+    pytest.fail("each time, a run finished before it was interrupted")
 
 
 @pytest.mark.exhaustive
