@@ -7,7 +7,7 @@ import os
 import pickle
 import signal
 import subprocess
-from contextlib import suppress
+from contextlib import closing, suppress
 from typing import TYPE_CHECKING
 
 import pytest
@@ -21,6 +21,7 @@ from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment, grade, judged
 from grader.tests.classroom.test_class_run import assert_set_aside, graded, make_four, order_of, waited
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,13 +65,15 @@ class Cluster:
 
 
 @pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[Cluster]:
+def cluster(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cluster]:
+    # A busy machine may need a minute until a worker of Dask has started.
+    monkeypatch.setattr(dask_engine, "CONNECT_S", HANG_S)
+    monkeypatch.setattr(dask_engine, "WORKERS_S", HANG_S)
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     (tmp_path / "dask").mkdir()
-    made = Cluster(tmp_path / "dask")
-    yield made
-    made.close()
+    with closing(Cluster(tmp_path / "dask")) as made:
+        yield made
 
 
 def test_a_submission_that_kills_workers_is_an_error_and_the_others_are_graded(
