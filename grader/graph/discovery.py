@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import rclpy
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
@@ -28,7 +29,7 @@ from grader.ros.failure import Ros2Error
 from grader.ros.installation import FASTDDS_PROFILE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from rclpy.node import Node
 
@@ -224,6 +225,21 @@ def spin_until(
         with stops_deferred() if defer_stops else nullcontext():
             rclpy.spin_once(node, timeout_sec=left)
     return True
+
+
+def wait_until_acknowledged(publishers: Iterable[Any], timeout_s: float, usual_s: float) -> None:
+    """Wait until all reliable subscriptions have received the last messages of the publishers, up to a timeout.
+
+    A subscription that has not discovered the publisher yet, for example because its process is waiting for a
+    processor, loses the messages if the publisher leaves the graph. Without the profile loopback.xml, acknowledgements
+    take up to 3 s, and the timeout is `usual_s`.
+    """
+    prompt = os.environ.get(_PROFILE) == str(LOOPBACK_PROFILE)
+    end = time.monotonic() + (timeout_s if prompt else usual_s)
+    for publisher in publishers:
+        left = min(usual_s, _WAKE_S)
+        while left > 0 and not publisher.wait_for_all_acked(Duration(seconds=left)):
+            left = min(end - time.monotonic(), _WAKE_S)
 
 
 def nap(duration_s: float) -> None:

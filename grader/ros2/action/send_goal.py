@@ -17,7 +17,10 @@ from grader.ros2.given_file import standard_input
 if TYPE_CHECKING:
     import argparse
 
-_CANCEL_S = 2.0
+_CANCEL_S = 8.0
+"""The maximum time (s) to wait for the action server after Ctrl-C, which is less than `main.ENDS_S`. A second Ctrl-C
+ends the wait."""
+_SILENT = "The action server did not respond, so it may still execute the goal."
 _POLL_S = 0.02
 _STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
 """The names of the goal statuses, indexed by their numbers in action_msgs/msg/GoalStatus."""
@@ -113,13 +116,21 @@ def _follow(node: Any, client: Any, goal: Any, *, feedback: bool) -> None:  # no
 
 
 def _cancel(node: Any, sent: Any) -> None:  # noqa: ANN401
-    """Cancel the goal that was sent, unless the server rejects it or does not respond in time."""
+    """Cancel the goal that was sent, unless the server rejects it. If the server does not respond in time, say so."""
     from grader.graph.discovery import spin_until
 
-    if not spin_until(node, sent.done, _CANCEL_S, defer_stops=True) or not sent.result().accepted:
+    end = time.monotonic() + _CANCEL_S
+
+    def answered(future: Any) -> bool:  # noqa: ANN401
+        if not spin_until(node, future.done, end - time.monotonic(), defer_stops=True):
+            print(_SILENT, file=sys.stderr, flush=True)
+            return False
+        return True
+
+    if not answered(sent) or not sent.result().accepted:
         return
     print("Canceling goal...", flush=True)
     with stops_deferred():
         canceled = sent.result().cancel_goal_async()
-    if spin_until(node, canceled.done, _CANCEL_S, defer_stops=True) and canceled.result().goals_canceling:
+    if answered(canceled) and canceled.result().goals_canceling:
         print("Goal canceled.", flush=True)

