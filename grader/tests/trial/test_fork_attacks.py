@@ -17,6 +17,7 @@ from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.tests.observed_host import Host, readable_by_others
 from grader.tests.trial.forks import WALL, run
+from grader.tests.waiting import HANG_S
 from grader.trial.trial import WallTimeNeeded
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ from grader.ros.underlay import with_turtlesim
 from grader.trial.recording import Pose
 from grader.trial.trial import Plan, Trial
 
-def run(script, duration_s, begun=None):
+def run(script, duration_s, ready=lambda trial: None):
     tree = io.BytesIO()
     with tarfile.open(fileobj=tree, mode="w") as archive:
         member = tarfile.TarInfo("package/lib/package/node")
@@ -42,11 +43,13 @@ def run(script, duration_s, begun=None):
     plan = Plan("wall", Pose(5.5, 5.5, 0.0), None, duration_s)
     with Trial(plan, with_turtlesim(find_ros()), in_cell=True) as trial:
         trial.await_ready()
+        ready(trial)
         return trial.run("package", "node", tree.getvalue()).stdout.text
 """
 """A program begins with this text. It can then run a script as a node of a trial in wall time."""
 IN_TRANSIT = """
-import socket, time
+import signal, socket
+signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 kept, count = [], 0
 try:
     while True:
@@ -59,7 +62,7 @@ try:
             pass
 except OSError as error:
     print(count > 1000, error.errno, flush=True)
-time.sleep(6)
+signal.sigwait({signal.SIGINT})
 """
 
 
@@ -69,31 +72,6 @@ def folder() -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="forks-", ignore_cleanup_errors=True) as made:
         Path(made).chmod(0o755)
         yield Path(made)
-
-
-def beside(hostile: str, folder: Path, limits: str = "") -> str:
-    """Return the output of a hostile node, and of honest ones that start while the hostile node runs."""
-    code = f"""{TRIALS}
-{limits}
-results = []
-hostile = threading.Thread(target=lambda: results.append(run({hostile!r}, 4.0)))
-hostile.start()
-hostile.join(3.0)
-honest = [run("print('honest')", 0.1) for _ in range(2)]
-hostile.join()
-print(*results, *honest, sep="", end="")
-"""
-    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=True)
-    (host.work / "program.py").write_text(code, "utf-8")
-    done = host.run([sys.executable, "/tmp/work/program.py"])
-    assert done.exit_code == 0, done.stderr
-    return done.stdout
-
-
-@as_user
-def test_a_node_that_fills_the_sockets_of_its_user_with_descriptors_does_not_stop_other_trials(folder: Path) -> None:
-    limits = "import resource; resource.setrlimit(resource.RLIMIT_NOFILE, (1024, resource.getrlimit(7)[1]))"
-    assert beside(IN_TRANSIT, folder, limits) == "True 109\nhonest\nhonest\n"
 
 
 FORKS = """
@@ -107,6 +85,45 @@ def children(pid):
 ros = with_turtlesim(find_ros())
 plan = Plan("wall", Pose(5.5, 5.5, 0.0), None, 1.0)
 """
+BESIDE = f"""{TRIALS}{FORKS}
+import errno, signal, socket, time
+
+def sockets_are_full():
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        try:
+            socket.send_fds(ours, [b"x"], [0])
+        except OSError as error:
+            return error.errno == errno.ETOOMANYREFS
+    return False
+
+resource.setrlimit(resource.RLIMIT_NOFILE, (1024, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+results, trials = [], []
+hostile = threading.Thread(target=lambda: results.append(run({IN_TRANSIT!r}, 600.0, trials.append)))
+hostile.start()
+try:
+    deadline = time.monotonic() + {HANG_S}
+    while not sockets_are_full():
+        assert hostile.is_alive() and time.monotonic() < deadline
+        time.sleep(0.01)
+    honest = [run("print('honest')", 0.1) for _ in range(2)]
+    assert sockets_are_full()
+finally:
+    os.kill(children(children(trials[0]._conductor.pids()[2])[0])[0], signal.SIGINT)
+hostile.join()
+print(*results, *honest, sep="", end="")
+"""
+"""A program that runs a hostile node, and honest nodes while the sockets of their user are full."""
+
+
+@as_user
+def test_a_node_that_fills_the_sockets_of_its_user_with_descriptors_does_not_stop_other_trials(folder: Path) -> None:
+    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=True)
+    (host.work / "program.py").write_text(BESIDE, "utf-8")
+    done = host.run([sys.executable, "/tmp/work/program.py"])
+    assert done.stdout == "True 109\nhonest\nhonest\n", done.stderr
+
+
 NOT_INSPECTED = f"""{TRIALS}{FORKS}
 with Trial(plan, ros, in_cell=True) as trial:
     trial.await_ready()
@@ -143,7 +160,7 @@ with Trial(plan, ros, in_cell=True) as trial:
 def test_forks_of_root_have_neither_its_user_nor_any_of_its_groups() -> None:
     start = interpreter("-c", USERS, searches=True)
     command = ["setpriv", "--groups", "0,4242", *start.argv]
-    done = subprocess.run(command, env=start.env, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(command, env=start.env, capture_output=True, text=True, check=True, timeout=HANG_S)
     assert done.stdout == "1 True []\n1 True []\n"
 
 
@@ -185,14 +202,13 @@ for pid in [int(name) for name in os.listdir("/proc") if name.isdigit()]:
 ctypes.CDLL(None).prctl(4, 0, 0, 0, 0)
 for number in range(60_000):
     open(f"/dev/shm/{number}", "w").close()
-time.sleep(2)
-print("done")
+time.sleep(600)
 """
 
 
 def test_a_node_cannot_hide_its_disks() -> None:
     """The conductor looks at the disks through a process of the cell that it may inspect."""
-    recording = run(HIDES, replace(WALL, duration_s=5.0))
+    recording = run(HIDES, replace(WALL, duration_s=HANG_S))
     assert (recording.end.out_of, recording.stdout.text) == ("files", "")
 
 

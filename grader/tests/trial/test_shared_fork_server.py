@@ -6,6 +6,7 @@ import os
 import signal
 import socket
 import subprocess
+from dataclasses import replace
 
 import pytest
 
@@ -93,9 +94,9 @@ def test_a_forked_server_ends_with_the_server_that_forked_it_and_both_are_starte
 @pytest.mark.parametrize("share", [False, True])
 def test_a_node_is_not_blamed_if_its_server_is_killed(*, share: bool) -> None:
     server = fork_client.nodes(with_turtlesim(find_ros()))
-    script = "#!/usr/bin/env python3\nimport time\ntime.sleep(60.0)\n"
+    script = "#!/usr/bin/env python3\nimport time\ntime.sleep(600.0)\n"
     with pytest.raises(MachineError, match=r"^The simulator (failed\. A process .*|)was killed \(SIGKILL\)"):
-        run(script, share=share, meanwhile=lambda: kill(server))
+        run(script, replace(WALL, duration_s=HANG_S), share=share, meanwhile=lambda: kill(server))
 
 
 def test_a_fork_counts_as_killed_if_the_server_ends_before_the_request() -> None:
