@@ -141,9 +141,11 @@ def _own() -> Iterator[tuple[str, str]]:
 def _remove(folder: Path) -> None:
     """Remove a group. The kernel does not remove a group before all of its processes have exited."""
     until = time.monotonic() + GONE_S
-    while folder.is_dir() and time.monotonic() < until:
+    while folder.is_dir():
         with suppress(OSError):
             folder.rmdir()
+            return
+        if time.monotonic() > until:
             return
         time.sleep(0.005)
 

@@ -1,16 +1,14 @@
-"""ROS domains for tests. Two test processes on one machine never use the same domain."""
+"""ROS domains for tests. Two test processes on one machine never use the same domain, nor that of a trial."""
 
 from __future__ import annotations
 
 import fcntl
-import os
-import tempfile
 import time
 from functools import cache
-from pathlib import Path
 from typing import IO
 
 from grader.tests.waiting import HANG_S
+from grader.trial.own_domain import lock_file
 
 FIRST, LAST = 2, 101
 """The domains that tests use. Domain 1 belongs to root, and root may be using this machine at the same time. Domains
@@ -48,7 +46,7 @@ def _free() -> int | None:
     for domain in range(FIRST, LAST + 1):
         if domain in _held:
             continue
-        file = (Path(tempfile.gettempdir()) / f"grader-test-domain-{os.getuid()}-{domain}.lock").open("w")
+        file = lock_file(domain).open("w")  # trials without a sandbox use the same files
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -21,10 +21,9 @@ def own_domain(stack: ExitStack) -> int:
     Raises:
         MachineError: all domains are in use, or the folder of the lock files cannot be used.
     """
-    folder = private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}")
     # The ports of higher domains are in the range from which Linux assigns ports to any program.
     for domain in range(1, 102):
-        file = stack.enter_context((folder / f"domain-{domain}.lock").open("w"))
+        file = stack.enter_context(lock_file(domain).open("w"))
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -33,3 +32,12 @@ def own_domain(stack: ExitStack) -> int:
         return domain
     message = "All ROS domains from 1 to 101 are in use by other trials or tests: wait until one has ended."
     raise MachineError(message)
+
+
+def lock_file(domain: int) -> Path:
+    """Return the file that is locked while a program of this user has the domain for itself.
+
+    Raises:
+        MachineError: the folder of the lock files cannot be used.
+    """
+    return private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}") / f"domain-{domain}.lock"

@@ -14,6 +14,7 @@ from grader.sandbox import bubblewrap, process
 from grader.sandbox.limits import MIB, Limits
 from grader.sandbox.system_calls import DENIED, call_filter, program
 from grader.sandbox.user import cell_user
+from grader.tests.waiting import HANG_S
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 ENV = {"PATH": "/usr/bin:/bin", "HOME": str(bubblewrap.HOME)}
@@ -35,7 +36,7 @@ def run(
         return process.run(
             command,
             env=ENV,
-            timeout_s=60.0,
+            timeout_s=HANG_S,
             most_stdout=10**6,
             most_stderr=10**5,
             pass_fds=() if filter_fd is None else (filter_fd,),
@@ -101,13 +102,13 @@ def test_a_cell_can_only_write_to_its_writable_folders(place: str) -> None:
 
 
 def test_a_cell_that_uses_too_much_memory_in_total_is_ended() -> None:
-    code = "blocks = [bytearray(60 << 20) for _ in range(4)]; import time; time.sleep(20)"
+    code = "blocks = [bytearray(60 << 20) for _ in range(4)]; import time; time.sleep(600)"
     done = run(code, Limits(total_memory=128 * MIB))
     assert (done.out_of, done.timed_out) == ("memory", False)
 
 
 def test_a_cell_with_too_many_files_is_ended() -> None:
-    code = "[open(f'/tmp/{n}', 'w').close() for n in range(2000)]; import time; time.sleep(20)"
+    code = "[open(f'/tmp/{n}', 'w').close() for n in range(2000)]; import time; time.sleep(600)"
     done = run(code, Limits(files=1000))
     assert (done.out_of, done.timed_out) == ("files", False)
 
@@ -134,7 +135,7 @@ for _ in range(30):
 
 @pytest.mark.parametrize("fill", [UDP, TCP], ids=["UDP", "TCP"])
 def test_data_that_waits_in_sockets_counts_as_memory(fill: str) -> None:
-    code = f"import contextlib, socket, time{fill}time.sleep(1.0 + 20.0 * sends)"
+    code = f"import contextlib, socket, time{fill}time.sleep(1.0 + 600.0 * sends)"
     limits = Limits(total_memory=12 * MIB)
     assert [run(f"sends = {sends}\n{code}", limits).out_of for sends in (0, 1)] == [None, "memory"]
 
@@ -162,7 +163,7 @@ with open("file", "w+b") as file:
     file.truncate(30_000_000)
     shared = mmap.mmap(file.fileno(), 30_000_000)
     shared[:] = bytes(len(shared))
-time.sleep(10)
+time.sleep(600)
 """
     assert run(code, Limits(total_memory=48 * MIB)).out_of == "memory"
 

@@ -13,6 +13,7 @@ import pytest
 from grader.sandbox import process
 from grader.sandbox.limits import MIB, Limits, limited
 from grader.tests.case import ROOT
+from grader.tests.waiting import HANG_S
 
 
 def test_limits_alone_need_no_bubblewrap() -> None:
@@ -24,7 +25,7 @@ def test_a_program_cannot_ignore_its_limit_on_cpu_time() -> None:
     """The soft limit is also the hard limit, at which the kernel sends SIGKILL instead of SIGXCPU."""
     ignores = "import signal\nsignal.signal(signal.SIGXCPU, signal.SIG_IGN)\nwhile True: pass"
     for code in (ignores, "while True: pass"):
-        done = subprocess.run(limited([sys.executable, "-c", code], Limits(cpu_s=1)), check=False, timeout=60.0)
+        done = subprocess.run(limited([sys.executable, "-c", code], Limits(cpu_s=1)), check=False, timeout=HANG_S)
         assert done.returncode == -signal.SIGKILL, code
 
 
@@ -58,12 +59,12 @@ def test_too_little_memory_for_a_program_is_the_machines_fault() -> None:
 @pytest.mark.parametrize(
     ("code", "out_of"),
     [
-        ("import subprocess\nall = [subprocess.Popen(['sleep', '20']) for _ in range(40)]\nall[0].wait()", "processes"),
-        ("import time\nx = bytearray(b'1' * (300 << 20))\ntime.sleep(20)", "memory"),
+        ("import subprocess\nall = [subprocess.Popen(['sleep', '600']) for _ in '0' * 40]\nall[0].wait()", "processes"),
+        ("import time\nx = bytearray(b'1' * (300 << 20))\ntime.sleep(600)", "memory"),
     ],
 )
 def test_without_a_cell_the_grader_counts_the_total_of_all_processes(code: str, out_of: str) -> None:
     limits = Limits(processes=20, total_memory=100 * MIB)
     command = limited([sys.executable, "-c", code], limits)
-    done = process.run(command, timeout_s=15.0, most_stdout=1000, most_stderr=1000, watch=limits)
+    done = process.run(command, timeout_s=HANG_S, most_stdout=1000, most_stderr=1000, watch=limits)
     assert (done.out_of, done.timed_out) == (out_of, False)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import sys
 import time
 
@@ -8,9 +9,10 @@ import pytest
 from grader.sandbox.limits import Limits
 from grader.sandbox.process import Finished, run
 from grader.sandbox.usage import Guard
+from grader.tests.waiting import HANG_S
 
 
-def python(code: str, *, stdin: bytes = b"", timeout_s: float = 60.0, most: int = 1_000_000) -> Finished:
+def python(code: str, *, stdin: bytes = b"", timeout_s: float = HANG_S, most: int = 1_000_000) -> Finished:
     return run([sys.executable, "-c", code], stdin=stdin, timeout_s=timeout_s, most_stdout=most, most_stderr=2_000)
 
 
@@ -30,9 +32,17 @@ def test_a_child_that_does_not_read_its_input_is_not_an_error() -> None:
 
 
 def test_a_child_that_never_ends_is_ended_with_its_children() -> None:
-    code = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"
-    done = python(code, timeout_s=1.0)
-    assert done.timed_out
+    timeout_s, begun = 0.5, b""
+    while begun != b"!" * 2:  # on a busy machine, the time may be over before the two processes have begun
+        timeout_s *= 2.0
+        ours, theirs = os.pipe()
+        code = f"import os\nos.fork()\nos.write({theirs}, b'!')\nwhile True: pass"
+        argv = [sys.executable, "-c", code]
+        done = run(argv, timeout_s=timeout_s, most_stdout=1, most_stderr=2_000, pass_fds=(theirs,))
+        os.close(theirs)
+        with os.fdopen(ours, "rb") as pipe:
+            begun = pipe.read()  # until no process is left
+        assert done.timed_out
 
 
 def test_a_child_that_closes_its_output_but_does_not_end_is_ended() -> None:
@@ -62,7 +72,8 @@ def test_waiting_for_a_processor_does_not_count(
 ) -> None:
     monkeypatch.setattr(Guard, "waited_s", lambda _: waited_s)
     monkeypatch.setattr("grader.sandbox.process.MOST_TIME", 1000)
-    done = run(["sleep", "1"], timeout_s=0.3, most_stdout=100, most_stderr=100, watch=Limits())
+    program = ["sleep", "1000" if timed_out else "1"]
+    done = run(program, timeout_s=0.3, most_stdout=100, most_stderr=100, watch=Limits())
     assert done.timed_out == timed_out
 
 
@@ -75,8 +86,8 @@ def test_a_child_on_a_crowded_machine_is_ended_after_three_times_its_limit(monke
 
 
 def test_processes_gain_no_time_by_keeping_the_processors_busy(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("grader.sandbox.process.MOST_TIME", 20)
+    monkeypatch.setattr("grader.sandbox.process.MOST_TIME", HANG_S)
     busy = "for number in 1 2 3 4 5 6 7 8; do while :; do :; done & done; wait"
     done = run(["sh", "-c", busy], timeout_s=1.0, most_stdout=100, most_stderr=100, watch=Limits())
     assert done.timed_out
-    assert done.seconds < 20
+    assert done.seconds < HANG_S

@@ -47,12 +47,12 @@ def test_nested_long_names_do_not_recurse() -> None:
 
 
 def test_negative_sizes_do_not_move_backwards() -> None:
-    begun = time.monotonic()
+    begun_s = time.process_time()
     below = b"\xff" * 10 + b"\xfc\x00"
     assert read_tar(header(b"a", b"00000000000\0") + header(b"b", below) * 2 + bytes(1024), 10).keys() == {
         PurePosixPath("a")
     }
-    assert time.monotonic() - begun < 5.0
+    assert time.process_time() - begun_s < 5.0
 
 
 def test_paths_that_leave_the_folder_are_left_out() -> None:

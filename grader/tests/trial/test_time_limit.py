@@ -62,10 +62,13 @@ def test_a_trial_is_starved_if_other_programs_used_the_processors(
 
 
 def test_a_trial_that_is_over_is_not_killed(monkeypatch: pytest.MonkeyPatch) -> None:
-    conductor = a_conductor(monkeypatch, "exec sleep 0.5")
+    conductor = a_conductor(monkeypatch, "exec cat")
     limit = TimeLimit(conductor)
-    limit.start(0.1)
+    limit.start(HANG_S)
     limit.cancel()
+    limit._timer.join(HANG_S / 2.0)
+    assert not limit._timer.is_alive()
+    conductor.stdin.close()
     assert conductor.wait(HANG_S) == 0
     conductor.close()
 
