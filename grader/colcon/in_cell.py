@@ -25,14 +25,15 @@ import types
 import warnings
 from contextlib import suppress
 from dataclasses import asdict, dataclass
-from functools import partial
+from functools import cache, partial
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-# In a cell, the grader consists of this file and the two files that it imports.
+# In a cell, the grader consists of this file and the files that it imports.
 sys.path[0] = str(Path(__file__).parents[2])
 from grader.colcon.entry_points_cache import EntryPoints  # noqa: E402
+from grader.colcon.setup_commands import import_commands  # noqa: E402
 from grader.common.quick_exit import QuickExit  # noqa: E402
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ _AT_START = re.compile(r"PYTHON(?!PATH$)|LD_|SETUPTOOLS_|DISTUTILS_")
 """Matches environment variables that have an effect only while Python starts or imports setuptools."""
 _WITH_PREFIX = ("sysconfig", "distutils.sysconfig")
 """Modules that copy sys.prefix when they are imported."""
+_MODULES = tuple(importlib.machinery.all_suffixes())
 _CONDITION = "catkin_pkg.condition"
 
 
@@ -84,11 +86,25 @@ def _at_start(env: Mapping[str, str]) -> dict[str, str]:
 
 
 def _hides_a_module(folder: str) -> bool:
-    """Return whether the folder shadows a module that has already been imported, or cannot be read."""
+    """Return whether the folder shadows a module that is imported or that setup.py may import, or cannot be read."""
     try:
-        return any(path.name.partition(".")[0] in sys.modules for path in Path(folder).iterdir())
+        return any(
+            (name := path.name.partition(".")[0]) in sys.modules
+            or (name in _can_be_imported() and (path.suffix in _MODULES or (path / "__init__.py").exists()))
+            for path in Path(folder).iterdir()
+        )
     except OSError:
         return True
+
+
+@cache
+def _can_be_imported() -> frozenset[str]:
+    """Return the names of the modules of Python and of the installed packages, except setup.py's own name."""
+    found = set(sys.stdlib_module_names)
+    for folder in sys.path:
+        with suppress(OSError):
+            found.update(path.name.partition(".")[0] for path in Path(folder).iterdir())
+    return frozenset(found - {"setup"})
 
 
 def _compiles(script: str) -> bool:
@@ -109,7 +125,7 @@ class Forks:
         self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         if os.fork() == 0:
             self._requests.close()
-            _import_commands()
+            import_commands()
             gc.freeze()  # a fork would copy the memory that garbage collection writes to
             become(_next_run(theirs))
         theirs.close()
@@ -133,16 +149,6 @@ class Forks:
                 signal.signal(os.WTERMSIG(status), signal.SIG_DFL)
             os.kill(os.getpid(), os.WTERMSIG(status))
         os._exit(os.WEXITSTATUS(status))
-
-
-def _import_commands() -> None:
-    """Import the commands of setup.py, as `setup.py --help-commands` does."""
-    for command in metadata.entry_points(group="distutils.commands"):
-        with suppress(Exception):
-            command.load()
-    for name in importlib.import_module("distutils.command").__all__:
-        with suppress(Exception):
-            importlib.import_module(f"distutils.command.{name}")
 
 
 def _next_run(requests: socket.socket) -> Run:

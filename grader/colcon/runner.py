@@ -37,7 +37,11 @@ MIB = 1024 * 1024
 _HERE = Path(__file__).absolute()
 IN_CELL = _HERE.with_name("in_cell.py")
 """The script that runs colcon."""
-IMPORTED = (_HERE.with_name("entry_points_cache.py"), _HERE.parents[1] / "common" / "quick_exit.py")
+IMPORTED = (
+    _HERE.with_name("entry_points_cache.py"),
+    _HERE.with_name("setup_commands.py"),
+    _HERE.parents[1] / "common" / "quick_exit.py",
+)
 """The files of the grader that the script imports."""
 LIMITS = Limits(processes=200, cpu_s=60)
 TIMEOUT_S = 60.0

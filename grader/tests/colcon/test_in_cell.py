@@ -35,7 +35,7 @@ from setuptools import find_packages, setup
 setup(
     name="fish", version="0.1.0", packages=find_packages(), install_requires=["setuptools"], tests_require=["pytest"],
     data_files=[("share/ament_index/resource_index/packages", ["resource/fish"]), ("share/fish", ["package.xml"])],
-    entry_points={{"console_scripts": ["swim = fish.node:main"]}},
+    entry_points={{"console_scripts": ["swim = fish.node:main"]}}, cmdclass={commands},
 )
 {after}
 """
@@ -71,14 +71,23 @@ left_open = [open(f"{number}.log", "a") for number in range(8)]
 for file in left_open:
     file.write("helped")
 """
+OWN_COMMAND = """
+from setuptools import Command
+class Greet(Command):
+    description, user_options = "says hello", []
+    initialize_options = finalize_options = run = lambda self: None
+"""
+OWN_COMMANDS = "fish.egg-info/entry_points.txt"
 IN_A_FORK = "sys.stderr.write(f'in a fork: {IN_A_FORK}\\n')"
 
 
-def package(*, before: str = "", after: str = "", more: dict[str, str] | None = None) -> dict[str, str]:
+def package(
+    *, before: str = "", after: str = "", commands: str = "{}", more: dict[str, str] | None = None
+) -> dict[str, str]:
     """Return the files of a package whose setup.py does something before and after it calls setup."""
     return {
         "package.xml": PACKAGE_XML,
-        "setup.py": SETUP_PY.format(before=before, after=after),
+        "setup.py": SETUP_PY.format(before=before, after=after, commands=commands),
         "setup.cfg": "[develop]\nscript-dir=$base/lib/fish\n[install]\ninstall_scripts=$base/lib/fish\n",
         "resource/fish": "",
         "fish/__init__.py": "",
@@ -117,6 +126,8 @@ def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> t
     log = re.sub(r"\d+\.\d+s", "TIME", done.stdout.decode().removeprefix("colcon-is-ready\n"))
     # colcon prints this line while an older setuptools prints its warnings in another process.
     log = log.replace("Starting >>> fish\n", "")
+    if done.returncode:  # the order of the output of a run that failed and of colcon's message about it depends on luck
+        log = "\n".join(sorted(log.splitlines()))
     made = [*sorted((workspace / "install").rglob("*")), *sorted((workspace / "src").rglob("*.log"))]
     contents = {str(path): path.read_bytes() for path in made if path.is_file()}
     return done.returncode, log, {path: data for path, data in contents.items() if not path.endswith(".pyc")}
@@ -159,3 +170,25 @@ def test_setup_py_runs_in_a_fork_unless_its_folder_hides_a_module(
     code, log, _ = build(in_ros.ros, tmp_path / "ws", package(before=IN_A_FORK, more=more), forks=True)
     assert code == 0, log
     assert set(re.findall("in a fork: (.*)", log)) == {str(not more)}
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        pytest.param(package(), id="plain"),
+        pytest.param(package(before=OWN_COMMAND, commands="{'greet': Greet, 'clean': Greet}"), id="own class"),
+        pytest.param(package(commands="{'greet': None}"), id="no class"),
+        pytest.param(package(more={OWN_COMMANDS: "[distutils.commands]\ngreet = fish.node:main\n"}), id="own folder"),
+        pytest.param(package(more={OWN_COMMANDS: "[distutils.commands]\nbuild = fish.node:no\n"}), id="nothing there"),
+        pytest.param(package(more={"docutils.py": "1 / 0"}), id="own docutils"),
+    ],
+)
+def test_colcon_reads_the_same_commands_as_in_a_new_interpreter(
+    in_ros: InRos, tmp_path: Path, files: dict[str, str]
+) -> None:
+    def commands(*, forks: bool) -> tuple[int, list[list[str]]]:
+        code, _, _ = build(in_ros.ros, tmp_path / "ws", files, forks=forks)
+        log = (tmp_path / "ws" / "log" / "latest_build" / "logger_all.log").read_text()
+        return code, [sorted(names.split(", ")) for names in re.findall("Available setuptools commands: (.*)", log)]
+
+    assert commands(forks=True) == commands(forks=False)
