@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 STARTED = re.compile(r"http://127\.0\.0\.1:(\d+)/lab\?token=")
-START_S = 120.0
+START_S = 300.0
 
 
 @contextmanager

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+HANG_S = 180
+"""The time limit for a cell, and for the start of a kernel (s)."""
+
+
 class CourseKernel(AsyncKernelManager):
     """Starts the course's kernel, whether or not it is installed for the current user."""
 
@@ -58,7 +62,8 @@ def open_notebook(folder: Path) -> Iterator[Notebook]:
     """Yield a notebook in `folder` with the course's kernel."""
     client = NotebookClient(
         nbformat.v4.new_notebook(),  # type: ignore[no-untyped-call]
-        timeout=180,
+        timeout=HANG_S,
+        startup_timeout=HANG_S,
         allow_errors=True,
         kernel_manager_class=CourseKernel,
         resources={"metadata": {"path": str(folder)}},
