@@ -120,6 +120,9 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
     notebook_s = Integer(1800, help="Time limit for all cells of a notebook together, in seconds.").tag(config=True)
 
+    # If the kernel dies, the wait ends at once. A busy machine may need more than the 60 s of the base class.
+    startup_timeout = Integer(300, help="Time limit for the start of the kernel, in seconds.").tag(config=True)
+
     def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
         keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
         super().__init__(*arguments, **keywords)

@@ -29,7 +29,8 @@ Notebook = dict[str, Any]
 class Term:
     """A class in a separate folder, with a separate exchange."""
 
-    def __init__(self, folder: Path, step: str = STEP) -> None:
+    def __init__(self, folder: Path, step: str = STEP, *, cell_s: int = 60) -> None:
+        """Create the class. `cell_s` is the time limit for a student's cell, which a busy machine must not exceed."""
         self.step = step
         self.root = folder / "course-of-2027"
         self.exchange = folder / "exchange"
@@ -40,7 +41,7 @@ class Term:
         with (self.course / "nbgrader_config.py").open("a") as config:
             config.write(
                 f"get_config().Exchange.root = {str(self.exchange)!r}\n"
-                "get_config().ConfinedExecute.cell_s = 4\n"
+                f"get_config().ConfinedExecute.cell_s = {cell_s}\n"
                 "get_config().LateSubmissionPlugin.penalty_method = 'zero'\n"
             )
 

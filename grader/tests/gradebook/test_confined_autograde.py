@@ -11,7 +11,7 @@ from nbclient import NotebookClient
 from grader.exercise.model import course_folder
 from grader.gradebook.confined_autograde import ConfinedKernelManager
 from grader.sandbox import bubblewrap
-from grader.tests.notebook.kernels import Notebook
+from grader.tests.notebook.kernels import HANG_S, Notebook
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,7 +34,8 @@ def submission(tmp_path: Path) -> Path:
 @pytest.fixture
 def notebook(submission: Path) -> Iterator[Notebook]:
     manager = ConfinedKernelManager(submission=str(submission))
-    client = NotebookClient(nbformat.v4.new_notebook(), km=manager, timeout=60, allow_errors=True)  # type: ignore[no-untyped-call]
+    patience = {"timeout": HANG_S, "startup_timeout": HANG_S}
+    client = NotebookClient(nbformat.v4.new_notebook(), km=manager, allow_errors=True, **patience)  # type: ignore[no-untyped-call]
     with client.setup_kernel(cleanup_kc=True):
         yield Notebook(client)
 

@@ -114,7 +114,8 @@ def executed(folder: Path, *sources: str, **limits: int) -> NotebookNode:
     """Run autograde's step on a notebook with these cells. Assert that the result can be written and read."""
     application = Application()
     application.coursedir = SimpleNamespace(format_path=lambda *_: str(folder), submitted_directory="submitted")
-    step = ConfinedExecute(parent=Configurable(parent=application), **limits)
+    # On a busy machine, an attack may take longer than a student's cell may.
+    step = ConfinedExecute(parent=Configurable(parent=application), **{"cell_s": 300, **limits})
     notebook = new_notebook(cells=[new_code_cell(source) for source in sources])  # type: ignore[no-untyped-call]
     about = {"student": "mallory", "assignment": "01"}
     done, _ = step.preprocess(notebook, {"nbgrader": about, "metadata": {"path": str(folder)}})

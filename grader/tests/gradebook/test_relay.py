@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -14,6 +13,7 @@ from grader.common.interpreter import interpreter
 from grader.gradebook.relay import WHY_FILE, Order
 from grader.notebook.frames import packed
 from grader.sandbox.bubblewrap import View
+from grader.tests.waiting import HANG_S, until
 
 INFO = """{"ip": "SOCKETS", "key": "key", "signature_scheme": "hmac-sha256",
 "shell_port": 1, "control_port": 2, "stdin_port": 3, "iopub_port": 4, "hb_port": 5}"""
@@ -35,7 +35,7 @@ class Started:
 
     def why(self) -> str:
         """Return the reason why the relay stopped the cell."""
-        assert self.process.wait(60) == 0
+        assert self.process.wait(HANG_S) == 0
         file = self.folder / WHY_FILE
         return file.read_text() if file.is_file() else ""
 
@@ -68,8 +68,7 @@ def test_the_relay_waits_for_the_rest_of_a_frame_until_the_cell_ends(tmp_path: P
 def test_a_relay_ends_with_nbgrader_and_ends_the_cell(tmp_path: Path) -> None:
     relay = Started(tmp_path, f"import os; open({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))" + STAYS)
     file = tmp_path / "pid"
-    while not (file.is_file() and file.read_text()):
-        time.sleep(0.01)
+    until(lambda: file.is_file() and bool(file.read_text()))
     assert relay.process.stdin is not None
     relay.process.stdin.close()
     assert relay.why() == ""

@@ -104,7 +104,7 @@ def validated(step: str, root: str, home: Path) -> str:
     """Return the output of `nbgrader validate` for a copy of the notebook, since it executes the notebook in place."""
     folder = home / root / step
     shutil.copytree(ROOT / root / step, folder)
-    argv = ("validate", "--Execute.timeout=600", f"{step}.ipynb")
+    argv = ("validate", "--Execute.timeout=600", "--Execute.startup_timeout=600", f"{step}.ipynb")
     return nbgrader(*argv, cwd=folder, JUPYTER_DATA_DIR=str(home / "jupyter"))[1]
 
 
