@@ -12,6 +12,7 @@ import pytest
 
 from grader.ros2.daemon import client, socket_path
 from grader.tests.observed_host import USER
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,10 +57,11 @@ def daemon(*, forged: bool) -> Iterator[None]:
                 connection.recv(64)
                 connection.sendall(b'{"forged": true}')
 
-        thread = Thread(target=answer)
+        thread = Thread(target=answer, daemon=True)
         thread.start()
         yield
-        thread.join()
+        thread.join(HANG_S)
+        assert not thread.is_alive(), "no client has connected"
 
 
 def test_the_daemon_of_this_user_is_asked(folder: Path) -> None:

@@ -25,6 +25,7 @@ from grader.ros2.given_file import standard_input, why_not
 from grader.ros2.param import load
 from grader.tests import made_bag
 from grader.tests.ros2.world import World, world
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -41,7 +42,7 @@ def _limited() -> Iterator[None]:
         raise TimeoutError(message)
 
     before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(60)
+    signal.alarm(round(HANG_S))
     yield
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
@@ -170,7 +171,7 @@ def test_a_topic_with_an_invalid_name_is_ignored(quiet: World) -> None:
     assert "None of the selected topics can be published." in done.stderr
     assert done.code == 1
     os.mkfifo(quiet.home / "pipe")
-    done = quiet.run("timeout 60 ros2 bag info pipe")
+    done = quiet.run(f"timeout {HANG_S / 2} ros2 bag info pipe")
     assert done.stderr == "[ERROR] [ros2bag]: The bag 'pipe' cannot be read: pipe: it is a named pipe, not a file\n"
     assert done.code == 1
     assert "cannot be opened: File name too long" in quiet.run(f"ros2 bag info {'a' * 300}").stderr

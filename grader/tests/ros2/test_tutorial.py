@@ -212,7 +212,9 @@ def test_a_lost_terminal_leaves_no_process_behind(terminals: list[Terminal], dom
     there = process_ids(domain)
     assert len(there) >= 6  # the three shells and the programs that they have started
     for terminal in terminals:
-        os.close(terminal.shell.child_fd)
+        # `close` would kill the processes. pexpect must not close the descriptor a second time, when it may be in use.
+        terminal.shell.ptyproc.fileobj.close()
+        terminal.shell.ptyproc.closed = terminal.shell.closed = True
     for pid in there:
         until_gone(int(pid))
     for terminal in terminals:
