@@ -7,6 +7,7 @@ import time
 from functools import cache
 from typing import IO
 
+from grader.graph.announcements import participant_ports
 from grader.tests.waiting import HANG_S
 from grader.trial.own_domain import lock_file
 
@@ -42,14 +43,20 @@ def own_domain() -> int:
 
 
 def _free() -> int | None:
-    """Reserve a domain for this process until it ends, and return it. Return None if no domain is free."""
+    """Reserve a domain for this process until it ends, and return it. Return None if no domain is free.
+
+    A domain is not free if a process uses it, for example a process of a test that was killed.
+    """
     for domain in range(FIRST, LAST + 1):
         if domain in _held:
             continue
         file = lock_file(domain).open("w")  # trials without a sandbox use the same files
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            in_use = bool(participant_ports(domain))
         except BlockingIOError:
+            in_use = True
+        if in_use:
             file.close()
             continue
         _held[domain] = file

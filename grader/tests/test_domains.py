@@ -8,7 +8,8 @@ from pathlib import Path
 
 from grader.tests.domains import FIRST, LAST, MOST
 
-PROCESSES = 10
+PROCESSES = 6
+"""Programs that are running on this machine may use some of the domains."""
 CODE = f"""
 import sys
 from grader.tests.domains import default_domain, own_domain

@@ -1,4 +1,4 @@
-"""A function that test_live.py runs in a process with ROS 2."""
+"""Functions that test_live.py runs in processes with ROS 2."""
 
 from __future__ import annotations
 
@@ -9,11 +9,15 @@ import threading
 import time
 from types import SimpleNamespace
 
+import rclpy
+
+from grader.turtlesim import standalone
 from grader.turtlesim.live import EVERY, _Screen
-from grader.turtlesim.turtle import Pen
+from grader.turtlesim.node import TurtlesimNode
+from grader.turtlesim.turtle import FRAME_S, Pen
 from grader.turtlesim.world import World
 
-HANG_S = 60.0
+HANG_S = 120.0
 
 
 def pictures_of_a_turtle_that_stands_still(clears: bool) -> int:
@@ -32,6 +36,7 @@ def pictures_of_a_turtle_that_stands_still(clears: bool) -> int:
     for _ in range(EVERY):
         screen.after_frame()
     screen.close()
+    screen._thread.join(HANG_S)  # on a busy machine, the last picture takes longer than `close` waits for it
     sys.stdout = before
     return _count(written.getvalue())
 
@@ -43,3 +48,40 @@ def _count(data: bytes) -> int:
         data = data[4 + length :]
         count += 1
     return count
+
+
+class Simulated:
+    """A clock with the functions of `time` that `spin` uses. Its time advances only while a program sleeps."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+    def sleep(self, duration_s: float) -> None:
+        self.now_s += duration_s
+
+
+def late_frames() -> list[tuple[float, float]]:
+    """Return the times of the frames of a run (s), and when they were computed (s).
+
+    The fifth frame takes as long as ten frames should.
+    """
+    frames: list[tuple[float, float]] = []
+    stop, clock = threading.Event(), Simulated()
+
+    class Slow(TurtlesimNode):
+        def frame(self, now_s: float) -> None:
+            super().frame(now_s)
+            frames.append((now_s, clock.now_s))
+            if len(frames) == 5:
+                clock.sleep(10 * FRAME_S)
+            if len(frames) == 30:
+                stop.set()
+
+    vars(standalone)["time"] = clock
+    rclpy.init(args=[])
+    standalone.spin(Slow(), stop)
+    rclpy.shutdown()
+    return frames

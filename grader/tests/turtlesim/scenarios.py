@@ -7,12 +7,9 @@ from __future__ import annotations
 
 import itertools
 import math
-import threading
-import time
 from dataclasses import asdict
 from typing import Any
 
-import rclpy
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, ListParameters, SetParametersAtomically
 from rclpy.action import get_action_server_names_and_types_by_node
@@ -24,8 +21,6 @@ from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelativ
 from grader.tests.turtlesim.rig import Rig, names_of, twist
 from grader.trial.goals import GoalLog
 from grader.turtlesim.interface import QOS
-from grader.turtlesim.node import TurtlesimNode
-from grader.turtlesim.standalone import spin
 from grader.turtlesim.turtle import FRAME_S, Start
 
 
@@ -252,26 +247,6 @@ def hooks() -> dict[str, Any]:
             < 1e-6,
             "interventions": interventions,
         }
-
-
-def late_frames() -> list[float]:
-    """Return the times of the frames of a run in wall time (s). The fifth frame takes as long as ten frames should."""
-    times: list[float] = []
-    stop = threading.Event()
-
-    class Slow(TurtlesimNode):
-        def frame(self, now_s: float) -> None:
-            super().frame(now_s)
-            times.append(now_s)
-            if len(times) == 5:
-                time.sleep(10 * FRAME_S)
-            if len(times) == 30:
-                stop.set()
-
-    rclpy.init(args=[])
-    spin(Slow(), stop)
-    rclpy.shutdown()
-    return times
 
 
 def every_fourth_frame() -> list[str]:

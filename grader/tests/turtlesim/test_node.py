@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from grader.turtlesim.services import SERVICES
-from grader.turtlesim.turtle import FRAME_S, SIDE_M
+from grader.turtlesim.turtle import SIDE_M
 
 if TYPE_CHECKING:
     from grader.tests.in_ros import InRos
@@ -215,11 +215,6 @@ def test_a_trial_knows_what_the_node_subscribes_to_and_publishes(in_ros: InRos) 
 
 
 # --- without a client -----------------------------------------------------------------------------------------------
-
-
-def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:
-    times = in_ros.run("turtlesim.scenarios:late_frames").result
-    assert times == pytest.approx([frame * FRAME_S for frame in range(30)])
 
 
 def test_pose_and_colour_may_be_published_less_often(in_ros: InRos) -> None:
