@@ -10,6 +10,6 @@ def main():
         if os.fork() == 0:
             for fd in (0, 1, 2):
                 os.close(fd)
-            os.execv("/bin/sh", ["hostile-305", "-c", "sleep 60; true"])
+            os.execv("/bin/sh", ["hostile-305", "-c", "sleep 600; true"])
         os._exit(0)
     time.sleep(0.5)
