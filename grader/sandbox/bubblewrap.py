@@ -43,6 +43,7 @@ HOME = Path("/tmp/home")
 the room or cell."""
 
 ROOM_DISK = 256 * MIB
+_TRY_S = 60
 _ANYWAY = "On a machine without important data, --trust-submissions runs this code"
 
 
@@ -189,7 +190,11 @@ def require(*, trusted: bool = False, anyway: str = _ANYWAY) -> bool:
 
 
 def why_unavailable() -> str | None:
-    """Try to start a cell. Return None if sandbox cells work, and otherwise the reason."""
+    """Try to start a cell. Return None if sandbox cells work, and otherwise the reason.
+
+    Raises:
+        MachineError: the machine is too busy to find out. The caller must not take this for a missing sandbox.
+    """
     if program() is None:
         return _not_installed()
     view = View(read_only=())
@@ -197,9 +202,19 @@ def why_unavailable() -> str | None:
     with call_filter() as filter_fd, cell_user() as user:
         tried = lone_cell(["true"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
         inherited = () if filter_fd is None else (filter_fd,)
-        done = subprocess.run(
-            tried, capture_output=True, text=True, timeout=20, check=False, stdin=subprocess.DEVNULL, pass_fds=inherited
-        )
+        try:
+            done = subprocess.run(
+                tried,
+                capture_output=True,
+                text=True,
+                timeout=_TRY_S,
+                check=False,
+                stdin=subprocess.DEVNULL,
+                pass_fds=inherited,
+            )
+        except subprocess.TimeoutExpired:
+            message = f"bubblewrap did not create a sandbox within {_TRY_S} s. Try again when the machine is less busy."
+            raise MachineError(message) from None
     if done.returncode == 0:
         return entering.why_impossible()
     lines = done.stderr.strip().splitlines()[-1:] or ["no message"]

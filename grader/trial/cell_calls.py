@@ -35,7 +35,8 @@ Unlike wall time, CPU time does not depend on the load of the machine.
 PROGRAM_CPU_S = 5
 """The maximum CPU time of one run of a program (s), which also imports modules and reads a bag."""
 CALL_S = 20.0
-"""The maximum wall time of one call (s). After a call that exceeds one of the limits, no further call is made."""
+"""The maximum wall time of one call (s), without the time for which the call waits for a processor. After a call that
+exceeds one of the limits, no further call is made."""
 MOST_TEXT = 20_000
 POLL_S = 0.005
 TOO_LATE = "too late"
@@ -117,7 +118,7 @@ def _ended(child: int, most_cpu_s: int) -> str:
     A call can ignore SIGXCPU, or end normally when this signal arrives. Therefore, its CPU time counts, too.
     """
     until = time.monotonic() + CALL_S
-    while time.monotonic() < until:
+    while time.monotonic() < until or time.monotonic() < until + _waited_s(child):
         if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None:
             is_late = _cpu_s(child) >= most_cpu_s
             code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
@@ -133,6 +134,14 @@ def _ended(child: int, most_cpu_s: int) -> str:
 def _cpu_s(process: int) -> float:
     """Return the CPU time of a process (s) that the kernel compares with RLIMIT_CPU. See grader.common.linux_calls."""
     return time.clock_gettime(~process << 3)
+
+
+def _waited_s(process: int) -> float:
+    """Return for how long the first thread of a process has waited for a processor (s). See grader.sandbox.usage."""
+    try:
+        return int(Path(f"/proc/{process}/schedstat").read_text("ascii").split()[1]) / 1e9
+    except (OSError, IndexError, ValueError):  # not every kernel counts this
+        return 0.0
 
 
 def _end_processes(child: int) -> None:

@@ -34,6 +34,8 @@ STOP_S = 3.0
 later, SIGKILL. The time for which the node waits for a processor does not count."""
 MOST_WAITED_S = 12.0
 """The maximum time (s) that is subtracted from a node's time to exit, because the node waited for a processor."""
+_REPORTED_S = 30.0
+"""The maximum time to wait for the exit code of a process that has exited (s)."""
 MOST_GAP_S = 0.25
 """The maximum time (s) between two observations of a node that counts as its time to exit. If the grader itself, or the
 whole machine, was paused for longer, the node is not to blame, and may have exited long before this was noticed."""
@@ -181,7 +183,7 @@ class NodeProcess:
         if self._is_gone():
             # The node has just exited on its own, and its exit code is about to be reported.
             with suppress(subprocess.TimeoutExpired):
-                self._launcher.wait(STOP_S)
+                self._launcher.wait(_REPORTED_S)
         if not self.ended():
             self._by = "SIGINT"
 

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 MOST_ANSWER = 256 * MIB
 """The maximum size of one response from the conductor (bytes). A large response consists mostly of the messages in a
 recording."""
+_ENDED_S = 30.0
+"""The maximum time to wait for the exit code of a conductor that has closed its standard output (s)."""
 
 
 @dataclass(frozen=True)
@@ -256,7 +258,7 @@ class Trial:
 
     def _how_it_ended(self) -> OverwhelmedError | MachineError:
         try:
-            code = self._conductor.wait(5.0)
+            code = self._conductor.wait(_ENDED_S)
         except subprocess.TimeoutExpired:
             return OverwhelmedError("it no longer responded", hung=True)
         if self._time_limit.starved:

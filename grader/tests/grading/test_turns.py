@@ -6,7 +6,6 @@ grader.
 
 from __future__ import annotations
 
-import fcntl
 import subprocess
 import sys
 from contextlib import ExitStack
@@ -25,7 +24,7 @@ _OTHER = """
 import sys
 from pathlib import Path
 from grader.grading.turns import Turns
-mine = Turns(Path(sys.argv[1]))
+mine = Turns(Path(sys.argv[1]), lambda _: "tells" in sys.argv and print("waits", flush=True))
 with mine.shared():
     print("shared", flush=True)
     if "alone" in sys.argv:
@@ -64,11 +63,11 @@ def test_two_graders_share_the_machine(tmp_path: Path) -> None:
 def test_an_exclusive_turn_waits_for_earlier_graders_and_later_graders_wait_for_it(tmp_path: Path) -> None:
     with ExitStack() as stack:
         with Turns(tmp_path).shared():
-            alone = stack.enter_context(other(tmp_path, "alone"))
-            assert hears(alone) == "shared"
-            await_turnstile(tmp_path)
-            later = stack.enter_context(other(tmp_path))
+            alone = stack.enter_context(other(tmp_path, "alone", "tells"))
+            assert [hears(alone), hears(alone)] == ["shared", "waits"]
+            later = stack.enter_context(other(tmp_path, "tells"))
             go_on(later)
+            assert hears(later) == "waits"
             assert alone.stdout is not None
             assert not select([alone.stdout], [], [], 0.1)[0], "the machine is not free yet"
         assert hears(alone) == "alone"
@@ -78,17 +77,6 @@ def test_an_exclusive_turn_waits_for_earlier_graders_and_later_graders_wait_for_
         go_on(alone)
         go_on(alone)
         assert [hears(alone), hears(later), hears(later)] == ["done", "shared", "done"]
-
-
-def await_turnstile(folder: Path) -> None:
-    """Wait until a process holds the lock."""
-    with (folder / "turnstile").open("ab") as turnstile:
-        while True:
-            try:
-                fcntl.flock(turnstile, fcntl.LOCK_SH | fcntl.LOCK_NB)
-            except BlockingIOError:
-                return
-            fcntl.flock(turnstile, fcntl.LOCK_UN)
 
 
 def test_two_exclusive_turns_follow_each_other(tmp_path: Path) -> None:

@@ -231,3 +231,15 @@ def test_the_error_says_what_to_do_if_namespaces_are_forbidden(tmp_path: Path, m
     assert why is not None
     assert "setting up uid map" in why
     assert "AppArmor" in why
+
+
+def test_a_machine_that_is_too_busy_is_not_a_machine_without_a_sandbox(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow = tmp_path / "bwrap"
+    slow.write_text("#!/bin/sh\nexec sleep 600\n")
+    slow.chmod(0o755)
+    monkeypatch.setattr(bubblewrap, "program", lambda: str(slow))
+    monkeypatch.setattr(bubblewrap, "_TRY_S", 0.1)
+    with pytest.raises(MachineError, match="Try again when the machine is less busy"):
+        bubblewrap.usable()

@@ -76,15 +76,18 @@ def test_each_call_has_a_process_of_its_own(ros: Ros) -> None:
     assert [each.values for each in called(ros, source)] == [(1.0,), (1.0,)]
 
 
-def limit_calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, call_s: float) -> None:
-    """Limit each call to 1 s of CPU time and to this wall time (s)."""
+def limit_calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, call_s: float, waited_s: float = 0.0) -> None:
+    """Limit each call to 1 s of CPU time and to this wall time (s). Each call seems to have waited for `waited_s`."""
+    source = calling._SCRIPT.read_text("utf-8")
+    for old, new in (
+        ("FUNCTION_CPU_S = 2", "FUNCTION_CPU_S = 1"),
+        ("CALL_S = 20.0", f"CALL_S = {call_s}"),
+        ("        return int(Path(", f"        return {waited_s} or int(Path("),
+    ):
+        assert old in source
+        source = source.replace(old, new)
     script = tmp_path / "cell_calls.py"
-    script.write_text(
-        calling._SCRIPT.read_text("utf-8")
-        .replace("FUNCTION_CPU_S = 2", "FUNCTION_CPU_S = 1")
-        .replace("CALL_S = 20.0", f"CALL_S = {call_s}"),
-        "utf-8",
-    )
+    script.write_text(source, "utf-8")
     monkeypatch.setattr(calling, "_SCRIPT", script)
 
 
@@ -95,6 +98,18 @@ def test_a_call_that_does_not_end_is_stopped_and_the_others_are_not_made(
     for body in ("while True: pass", "import time; time.sleep(1000)"):
         first, second = called(ros, f"def f(x, y):\n    {body}\n")
         assert (first.ended, second.ended) == (TOO_LATE, ""), body
+
+
+@pytest.mark.parametrize(
+    ("waited_s", "values"), [(0.0, [None, None]), (1e6, [(1.0,), (1.0,)])], ids=["idle", "crowded"]
+)
+def test_the_time_for_which_a_call_waits_for_a_processor_does_not_count(
+    ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, waited_s: float, values: list[object]
+) -> None:
+    limit_calls(monkeypatch, tmp_path, 0.0, waited_s)
+    sleep_s = 0.2 if waited_s else 1000.0
+    source = f"import time\n\ndef f(x, y):\n    time.sleep({sleep_s})\n    return (1.0,)\n"
+    assert [each.values for each in called(ros, source)] == values
 
 
 @pytest.mark.parametrize("action", ["signal.SIG_IGN", "lambda *_: os._exit(0)"], ids=["ignored", "handled"])

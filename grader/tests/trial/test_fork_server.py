@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import family
 from grader.sandbox.user import cell_user
 from grader.tests.trial.forks import WALL, children, forks, kill, mapped, run
-from grader.tests.waiting import HANG_S, only_child, until_gone
+from grader.tests.waiting import HANG_S, only_child, until, until_gone
 from grader.trial import fork_client
 from grader.trial.trial import Trial
 
@@ -162,6 +163,11 @@ def test_a_fork_ends_when_nobody_waits_for_it() -> None:
         until_gone(conductor)
 
 
+def waits(pid: int) -> bool:
+    """Return whether a process with one thread sleeps, as a server that waits for a request."""
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "S"
+
+
 def test_a_server_keeps_nothing_of_a_trial_and_has_no_terminal() -> None:
     ros = with_turtlesim(find_ros())
     observed = []
@@ -176,6 +182,7 @@ def test_a_server_keeps_nothing_of_a_trial_and_has_no_terminal() -> None:
             assert os.getsid(pid) == pid
             for forked in set(children(pid)) - set(kept[pid]):
                 until_gone(forked)
+            until(partial(waits, pid))  # before that, it may not have closed what it has passed on
             observed.append(len(list(Path(f"/proc/{pid}/fd").iterdir())) if os.geteuid() == 0 else 0)
     assert observed[:2] == observed[2:]
 
