@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.common.private_folder import private_folder
 from grader.errors import MachineError
+from grader.graph.announcements import participant_ports
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 def own_domain(stack: ExitStack) -> int:
     """Return a ROS domain that no other call returns to this user on this machine until `stack` is closed.
+
+    A domain with nodes, such as a turtlesim that the user has started, is not returned.
 
     Raises:
         MachineError: all domains are in use, or the folder of the lock files cannot be used.
@@ -26,10 +29,12 @@ def own_domain(stack: ExitStack) -> int:
         file = stack.enter_context(lock_file(domain).open("w"))
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            in_use = bool(participant_ports(domain))
         except BlockingIOError:
-            file.close()
-            continue
-        return domain
+            in_use = True
+        if not in_use:
+            return domain
+        file.close()
     message = "All ROS domains from 1 to 101 are in use by other trials or tests: wait until one has ended."
     raise MachineError(message)
 
