@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import threading
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -127,9 +128,10 @@ def test_keys_come_in_order_and_the_end_of_input_ends_the_loop() -> None:
 def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     saved, reported = threading.Event(), threading.Event()
 
-    def watch(*_: object, **__: object) -> Iterator[set[str]]:
+    def watch(*_: object, stop_event: threading.Event, **__: object) -> Iterator[set[str]]:
         yield from ({"first"}, {"second"})
         saved.set()
+        stop_event.wait()  # without this, the folder would be watched again, and another save would be reported
 
     def keys() -> Iterator[str]:
         assert saved.wait(PATIENCE_S)
@@ -140,5 +142,6 @@ def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, mo
     monkeypatch.setattr("grader.learner.watch.watch", watch)
     events = Events(partial(next, keys()))
     events.watch(package)
-    assert reported.wait(PATIENCE_S)
-    assert [happened.kind for happened in events] == ["saved", "key"]
+    with closing(events):
+        assert reported.wait(PATIENCE_S)
+        assert [happened.kind for happened in events] == ["saved", "key"]

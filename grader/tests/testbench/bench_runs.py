@@ -11,7 +11,7 @@ from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.submission.package import open_submission
 from grader.testbench.bench import Bench
-from grader.testbench.result import NodeRun, runs_of
+from grader.testbench.result import Ended, NodeRun, runs_of
 from grader.tests.case import Case, make_submission
 
 if TYPE_CHECKING:
@@ -42,10 +42,15 @@ def solution_files(folder: Path) -> dict[str, bytes]:
 
 def run(nodes: TestsSpec, files: dict[str, bytes], *, lanes: int = 1, in_cell: bool = True) -> tuple[NodeRun, ...]:
     """Run the tests in these files on these nodes."""
+    return runs_of(all_ended(nodes, files, lanes=lanes, in_cell=in_cell))
+
+
+def all_ended(nodes: TestsSpec, files: dict[str, bytes], *, lanes: int = 1, in_cell: bool = True) -> tuple[Ended, ...]:
+    """Run the tests in these files on these nodes, and return what the bench knows of each run."""
     ros = underlay.with_turtlesim(find_ros())
     bench = Bench(nodes, "wall_guard", "my_robot_controller", files, ros, in_cell=in_cell, lanes=lanes)
     bench.start()
     try:
-        return runs_of(bench.result())
+        return bench.result()
     finally:
         bench.close()

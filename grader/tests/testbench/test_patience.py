@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from types import SimpleNamespace
 
 import pytest
 
 from grader.sandbox import bubblewrap
 from grader.testbench import bench
 from grader.testbench.conversation import LATEST
-from grader.tests.testbench.bench_runs import TESTS, run, spec
+from grader.tests.testbench.bench_runs import TESTS, all_ended, run, spec
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 SPINS = """
@@ -30,11 +31,16 @@ WAITS_FOR_A_CHILD = "import subprocess\n\ndef test_it():\n    subprocess.run(['s
 
 
 @pytest.mark.parametrize("code", [SPINS, WAITS_FOR_ITSELF], ids=["spins", "waits for itself"])
-def test_a_run_that_can_never_go_on_is_ended_early(code: str, files: dict[str, bytes]) -> None:
-    """The limit is so long that only this rule can end the runs."""
-    runs = run(spec("rate", "stop", right_runs=3, duration_s=600.0), {**files, TESTS: code.encode()}, lanes=2)
-    assert [(each.node, each.over) for each in runs if not each.node] == [("", True)]
-    assert all(each.over and each.seconds < bench.RIGHT_S for each in runs if each.node)
+def test_a_run_that_can_never_go_on_is_ended_early(
+    code: str, files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The limits are so long that only this rule can end the runs."""
+    for limit in ("RIGHT_S", "DOUBT_S"):
+        monkeypatch.setattr(bench, limit, 120.0)
+    nodes = spec("rate", "stop", right_runs=3, duration_s=600.0)
+    runs = all_ended(nodes, {**files, TESTS: code.encode()}, lanes=2)
+    assert [each.node for each in runs if not each.node] == [""]
+    assert all(each.over and each.stuck for each in runs)
 
 
 @pytest.mark.parametrize("code", [SLEEPS, LOOPS, WAITS_FOR_A_CHILD], ids=["sleeps", "loops", "waits for a child"])
@@ -67,11 +73,19 @@ def test_a_run_gains_no_time_by_keeping_the_processors_busy(files: dict[str, byt
 
 
 def test_a_run_is_ended_at_the_latest_time(files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Otherwise its cell would go on, and the next run would have to wait for it."""
-    monkeypatch.setattr("grader.testbench.conversation.END_S", 5.0)
-    monkeypatch.setattr("grader.testbench.patience.Patience.is_over", lambda _: False)
+    """Otherwise its cell would go on, and the next run would have to wait for it. In this test, time jumps."""
+    jumps: list[float] = []
+
+    def jump(_: object) -> bool:
+        jumps.append(1000.0)
+        return False
+
+    clock = SimpleNamespace(monotonic=lambda: time.monotonic() + sum(jumps))
+    monkeypatch.setattr("grader.testbench.conversation.time", clock)
+    monkeypatch.setattr("grader.testbench.patience.Patience.is_over", jump)
     runs = run(spec("rate", right_runs=1, duration_s=0.5), {**files, TESTS: SLEEPS.encode()})
     assert [each.over for each in runs if not each.node] == [True]
+    assert jumps
 
 
 ALARM = """
@@ -81,8 +95,8 @@ def test_it():
     def stop(*_):
         raise InterruptedError
     signal.signal(signal.SIGALRM, stop)
-    signal.alarm(2)
     try:
+        signal.alarm(2)
         threading.Event().wait()
     except InterruptedError:
         pass
