@@ -74,7 +74,10 @@ def test_a_pipe_that_may_not_grow_is_used_as_it_is(
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """Return a clock (s) for the time to exit. The clock advances only if the test sets it."""
+    """Return a clock (s) for the time to exit. The clock advances only if the test sets it.
+
+    While the clock stands still, a node is stopped by SIGINT alone, however slow the machine is.
+    """
     now_s = [0.0]
     monkeypatch.setattr(node_process, "time", SimpleNamespace(monotonic=lambda: now_s[0]))
     monkeypatch.setattr(Guard, "waited_s", lambda *_, **__: 0.0)
@@ -137,10 +140,8 @@ def test_a_node_is_not_blamed_for_a_pause_of_the_grader(tmp_path: Path, clock: l
     assert (end.by, end.stop_s) == ("SIGINT", 2.0 * node_process.MOST_GAP_S)
 
 
-def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(node_process, "STOP_S", HANG_S)
+@pytest.mark.usefixtures("clock")
+def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_its_own(tmp_path: Path) -> None:
     stopping, pid = tmp_path / "stopping", tmp_path / "pid"
     slow_one = SLOW.replace("sleep 1;", f"touch {stopping}; while kill -0 $(cat {pid}); do sleep 0.01; done;")
     wait = f"echo $$ > {pid}; echo waits; until [ -e {stopping} ]; do sleep 0.01; done"
@@ -155,6 +156,7 @@ def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_i
     assert (end.by, end.exit_code, end.stop_s) == ("SIGINT", 3, 0.0)
 
 
+@pytest.mark.usefixtures("clock")
 def test_a_node_that_is_busy_after_another_one_has_left_gets_time_before_it_is_stopped() -> None:
     busy = r"printf '\0ready\n'; read order; trap 'exit 0' INT; echo waits; while :; do :; done"
     limits = Limits(processes=50, cpu_s=60)
@@ -174,6 +176,7 @@ def test_a_node_that_is_busy_after_another_one_has_left_gets_time_before_it_is_s
         assert second.end(0.0).by == "SIGINT"
 
 
+@pytest.mark.usefixtures("clock")
 def test_a_node_with_too_many_threads_to_observe_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuses(_: int) -> None:
         raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
