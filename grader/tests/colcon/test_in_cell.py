@@ -101,8 +101,13 @@ def with_depend(attribute: str) -> str:
     return PACKAGE_XML.replace("<export>", f"<depend>rclpy</depend><depend {attribute}>unknown</depend><export>")
 
 
-def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> tuple[int, str, dict[str, bytes]]:
-    """Build the files, with forks or with plain colcon. Return the exit code, the log, and the files."""
+def build(
+    ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool
+) -> tuple[int, tuple[str, str], dict[str, bytes]]:
+    """Build the files, with forks or with plain colcon. Return the exit code, both output streams, and the files.
+
+    The streams are separate, because the order of lines in different streams depends on when colcon reads them.
+    """
     shutil.rmtree(workspace, ignore_errors=True)
     (workspace / "src").mkdir(parents=True)
     packed = io.BytesIO()
@@ -118,19 +123,17 @@ def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> t
         input=packed.getvalue() if forks else b"",
         env=environment(ros, home=workspace),
         cwd=workspace,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
+        capture_output=True,
         timeout=HANG_S,
         check=False,
     )
-    log = re.sub(r"\d+\.\d+s", "TIME", done.stdout.decode().removeprefix("colcon-is-ready\n"))
-    # colcon prints this line while an older setuptools prints its warnings in another process.
-    log = log.replace("Starting >>> fish\n", "")
+    stdout, stderr = (re.sub(r"\d+\.\d+s", "TIME", stream.decode()) for stream in (done.stdout, done.stderr))
+    stderr = stderr.removeprefix("colcon-is-ready\n")
     if done.returncode:  # the order of the output of a run that failed and of colcon's message about it depends on luck
-        log = "\n".join(sorted(log.splitlines()))
+        stderr = "\n".join(sorted(stderr.splitlines()))
     made = [*sorted((workspace / "install").rglob("*")), *sorted((workspace / "src").rglob("*.log"))]
-    contents = {str(path): path.read_bytes() for path in made if path.is_file()}
-    return done.returncode, log, {path: data for path, data in contents.items() if not path.endswith(".pyc")}
+    contents = {str(path): path.read_bytes() for path in made if path.is_file() and path.suffix != ".pyc"}
+    return done.returncode, (stdout, stderr), contents
 
 
 @pytest.mark.parametrize(
@@ -167,9 +170,9 @@ def test_a_fork_does_what_a_new_interpreter_does(in_ros: InRos, tmp_path: Path, 
 def test_setup_py_runs_in_a_fork_unless_its_folder_hides_a_module(
     in_ros: InRos, tmp_path: Path, more: dict[str, str]
 ) -> None:
-    code, log, _ = build(in_ros.ros, tmp_path / "ws", package(before=IN_A_FORK, more=more), forks=True)
-    assert code == 0, log
-    assert set(re.findall("in a fork: (.*)", log)) == {str(not more)}
+    code, (stdout, stderr), _ = build(in_ros.ros, tmp_path / "ws", package(before=IN_A_FORK, more=more), forks=True)
+    assert code == 0, stdout + stderr
+    assert set(re.findall("in a fork: (.*)", stderr)) == {str(not more)}
 
 
 @pytest.mark.parametrize(
