@@ -30,8 +30,9 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-START_S = 30.0
-"""The maximum time to wait for turtlesim's first picture (s). A busy machine may need many seconds."""
+START_S = 120.0
+"""The maximum time to wait for turtlesim's first picture (s). A busy machine may need many seconds. If turtlesim exits,
+the wait ends at once."""
 
 
 class Simulator:
