@@ -11,6 +11,7 @@ import os
 import shutil
 import signal
 import subprocess
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -131,5 +132,6 @@ def clone(folder: Path) -> Clone:
     for name in filter(None, listed.split("\0")):
         if (ROOT / name).is_file():  # skip a file that was removed without a commit
             (target / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, target / name)
+            with suppress(FileNotFoundError):  # another process has removed it meanwhile
+                shutil.copy2(ROOT / name, target / name)
     return Clone(target, home)
