@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import shlex
 import subprocess
 import tempfile
@@ -18,11 +19,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _TALKER = """
-import rclpy, turtlesim.msg, turtlesim.srv
+import sys, rclpy, turtlesim.msg, turtlesim.srv
 from std_msgs.msg import String
 rclpy.init()
 node = rclpy.create_node("talker")
-publisher = node.create_publisher(String, "doctor", 10)
+publisher = node.create_publisher(String, sys.argv[1], 10)
 node.create_timer(0.05, lambda: publisher.publish(String(data="well")))
 rclpy.spin(node)
 """
@@ -32,7 +33,7 @@ from std_msgs.msg import String
 rclpy.init()
 node = rclpy.create_node("listener")
 heard = []
-node.create_subscription(String, "doctor", heard.append, 10)
+node.create_subscription(String, sys.argv[1], heard.append, 10)
 deadline = time.monotonic() + 20.0
 while not heard and time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.5)
@@ -78,6 +79,9 @@ def _talk_from_a_cell(ros: Ros, user: int | None) -> list[str]:
 
 
 def _talker_and_listener(ros: Ros, env: Mapping[str, str]) -> tuple[list[str], list[str]]:
-    python = str(ros.python)
-    talker = interpreter("-c", _TALKER, python=python, env=env, searches=True)
-    return talker.argv, interpreter("-c", _LISTENER, python=python, env=env, searches=True).argv
+    # Nodes outside a cell would also receive the messages of another `grader doctor` that is running.
+    topic = f"doctor_{secrets.token_hex(8)}"
+    talker, listener = (
+        interpreter("-c", code, topic, python=str(ros.python), env=env, searches=True) for code in (_TALKER, _LISTENER)
+    )
+    return talker.argv, listener.argv

@@ -173,7 +173,7 @@ def test_memory(meminfo: str, state: str) -> None:
 
 
 def test_a_node_that_is_not_heard_is_reported(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
-    monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit")
     monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels)
     assert line.state == "broken"
@@ -192,7 +192,7 @@ def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatc
 
 
 def test_a_node_that_is_not_heard_without_a_cell_is_reported(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
-    monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit")
     monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels, confined=False)
     assert (line.state, "no message arrived" in line.observed) == ("broken", True)
