@@ -47,6 +47,8 @@ class Graded:
 
     left: Left
     work: Path
+    load: float
+    """The load average (1 minute) at the end of the attack."""
 
     @property
     def evidence(self) -> Evidence:
@@ -57,8 +59,9 @@ class Graded:
         return float(json.loads((self.work / "report.json").read_bytes())["points"])
 
     @property
-    def too_busy(self) -> bool:
-        return "The machine was too busy" in self.left.stdout
+    def crowded(self) -> bool:
+        """Return whether the report says that the machine was too busy, and other programs kept it busy."""
+        return "The machine was too busy" in self.left.stdout and self.load > 2.0 * (os.cpu_count() or 1)
 
     @property
     def said(self) -> str:
@@ -91,10 +94,10 @@ def run(attack: Attack, mode: str, folder: Path) -> Graded:
     if mode == "undefended" and attack.raw:
         raw = attack.raw.replace("{python}", shlex.quote(sys.executable))
         script = f"cd my_robot_controller && {{ {raw}; }} 2>&1"
-        return Graded(host.run(["sh", "-c", script], defended=False), host.work)
+        return Graded(host.run(["sh", "-c", script], defended=False), host.work, os.getloadavg()[0])
     wanted = ["--json", "report.json", "--html", "report.html", "--recording", "recording", "--clock", attack.clock]
     check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", attack.base, *wanted]
-    return Graded(host.run(check, defended=mode != "undefended"), host.work)
+    return Graded(host.run(check, defended=mode != "undefended"), host.work, os.getloadavg()[0])
 
 
 @pytest.fixture(scope="session")
@@ -138,7 +141,7 @@ def assert_held(attack: Attack, done: Graded) -> None:
     left = done.left
     # If other programs keep the machine busy, the report may mention it, and the attack may not get as far as it
     # otherwise does. The attacker alone must not cause this.
-    crowded = done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)
+    crowded = done.crowded
     if not crowded:
         assert left.exit_code in (0, 1), left.stdout + left.stderr
     assert (sorted(left.files), left.processes, left.sockets) == ([], (), ())

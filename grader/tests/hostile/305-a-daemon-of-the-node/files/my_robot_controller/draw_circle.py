@@ -12,4 +12,5 @@ def main():
                 os.close(fd)
             os.execv("/bin/sh", ["hostile-305", "-c", "sleep 600; true"])
         os._exit(0)
+    print("TRA" "CE of a daemon", flush=True)
     time.sleep(0.5)
