@@ -20,7 +20,15 @@ from grader.errors import UsageError
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment, grade, judged
-from grader.tests.classroom.test_class_run import assert_set_aside, graded, make_four, order_of, waited
+from grader.tests.classroom.test_class_run import (
+    assert_set_aside,
+    below,
+    command_line,
+    graded,
+    make_four,
+    order_of,
+    waited,
+)
 from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
@@ -94,6 +102,7 @@ def test_the_submission_of_a_lost_worker_is_graded_by_another(cluster: Cluster, 
 
         def events(self, timeout_s: float) -> list[Event]:
             if self._running and lost.poll() is None:
+                waited(lambda: [pid for pid in below(lost.pid) if b"grader.classroom.worker" in command_line(pid)])
                 lost.kill()
                 lost.wait()
                 cluster.worker("--no-nanny")

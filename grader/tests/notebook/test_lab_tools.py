@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 def opened(address: str) -> str:
     """Return the page at an address. JupyterLab prints the address shortly before it accepts connections."""
     pages: list[str] = []
+    directly = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # without the proxy of the user
 
     def answers() -> bool:
-        with suppress(OSError), urllib.request.urlopen(address) as page:
+        with suppress(OSError), directly.open(address) as page:
             pages.append(page.read().decode())
         return bool(pages)
 
