@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 
     from grader.exercise.model import Exercise
 
-READY_S = 30.0
-"""The maximum time for starting turtlesim (s)."""
-ENDS_S = 5.0
-"""The maximum time for a program to exit after Ctrl-C (s). After this time, the program is killed."""
+READY_S = 120.0
+"""The maximum time for starting turtlesim (s), which is long enough for a busy machine."""
+ENDS_S = 10.0
+"""The maximum time for a program to exit after Ctrl-C (s). After this time, the program is killed. On a busy machine, a
+node may take several seconds to leave the graph."""
 
 
 @dataclass(frozen=True)
