@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
+ANSWER_S = 10.0
+"""The maximum time to wait for a response from a busy node (s)."""
 _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
@@ -58,13 +60,13 @@ def call(node: Node, kind: str, service: str, request: Any = None) -> Any:  # no
     """
     import lifecycle_msgs.srv
 
-    from grader.graph.discovery import DEADLINE_S, settle, spin_until
+    from grader.graph.discovery import settle, spin_until
 
     made = getattr(lifecycle_msgs.srv, kind)
     client = node.create_client(made, service)
     settle(node, client.service_is_ready)
     future = client.call_async(request if request is not None else made.Request())
-    if not spin_until(node, future.done, DEADLINE_S):
+    if not spin_until(node, future.done, ANSWER_S):
         message = f"Exception while calling service of node '{service.rpartition('/')[0]}': the node did not respond"
         raise Ros2Error(message)
     return future.result()

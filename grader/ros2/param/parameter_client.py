@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-ANSWER_S = 5.0
+ANSWER_S = 10.0
 """The maximum time to wait for a response from a busy node (s)."""
 _POLL_S = 0.02
 _TYPES = {

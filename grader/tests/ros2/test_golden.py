@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.both_worlds import REAL_ROS2
+from grader.tests.domains import default_domain
 from grader.tests.ros2.world import World, all_golden, build, environment, golden, world
 from grader.tests.waiting import HANG_S
 
@@ -106,7 +107,7 @@ def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 @pytest.fixture(scope="module")
 def install(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("workspace")
-    return build(home, environment(home))
+    return build(home, environment(home, default_domain()))
 
 
 @pytest.fixture(scope="module")
