@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -59,14 +60,18 @@ class Notebook:
 
 @contextmanager
 def open_notebook(folder: Path) -> Iterator[Notebook]:
-    """Yield a notebook in `folder` with the course's kernel."""
-    client = NotebookClient(
-        nbformat.v4.new_notebook(),  # type: ignore[no-untyped-call]
-        timeout=HANG_S,
-        startup_timeout=HANG_S,
-        allow_errors=True,
-        kernel_manager_class=CourseKernel,
-        resources={"metadata": {"path": str(folder)}},
-    )
-    with client.setup_kernel():
-        yield Notebook(client)
+    """Yield a notebook in `folder` with the course's kernel.
+
+    The kernel listens on sockets in a folder: until it has started, another process could take a port that was free.
+    """
+    with tempfile.TemporaryDirectory() as sockets:
+        client = NotebookClient(
+            nbformat.v4.new_notebook(),  # type: ignore[no-untyped-call]
+            km=CourseKernel(transport="ipc", ip=f"{sockets}/kernel"),
+            timeout=HANG_S,
+            startup_timeout=HANG_S,
+            allow_errors=True,
+            resources={"metadata": {"path": str(folder)}},
+        )
+        with client.setup_kernel(cleanup_kc=True):
+            yield Notebook(client)
