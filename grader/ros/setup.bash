@@ -7,7 +7,9 @@ if [ -z "${BASH_VERSION-}" ]; then
     return 1 2> /dev/null || exit 1
 fi
 if [ "$0" = "${BASH_SOURCE-}" ]; then
-    echo "setup.bash was run as a program, so this terminal is as it was before. Type: source $0" >&2
+    typed=$0
+    case $typed in *[!A-Za-z0-9/._-]*) typed=${0@Q} ;; esac
+    echo "setup.bash was run as a program, so this terminal is as it was before. Type: source $typed" >&2
     exit 1
 fi
 eval "$("$(CDPATH= cd -- "$(dirname -- "${BASH_SOURCE[0]}")" > /dev/null && pwd)/bin/grader" env || [ $? != 126 ] || echo \

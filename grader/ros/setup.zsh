@@ -6,7 +6,7 @@ if [ -z "${ZSH_VERSION-}" ]; then
     return 1 2> /dev/null || exit 1
 fi
 if [ "$ZSH_EVAL_CONTEXT" = toplevel ]; then
-    echo "setup.zsh was run as a program, so this terminal is as it was before. Type: source $0" >&2
+    echo "setup.zsh was run as a program, so this terminal is as it was before. Type: source ${(q-)0}" >&2
     exit 1
 fi
 eval "$("${${(%):-%x}:A:h}/bin/grader" env || [ $? != 126 ] || echo \

@@ -34,6 +34,21 @@ def test_the_wrong_use_is_one_sentence_with_the_right_one(line: str, said: str) 
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh"])
+def test_the_line_to_type_works_as_it_stands_if_the_path_has_spaces_and_quotes(shell: str, tmp_path: Path) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip("zsh is not installed")
+    folder = tmp_path / "Mein Kürs, it's $HOME"
+    (folder / "bin").mkdir(parents=True)
+    (folder / "bin/grader").write_text("#!/bin/sh\necho echo sourced\n")
+    (folder / "bin/grader").chmod(0o755)
+    setup = shutil.copy(FOLDER / f"setup.{shell}", folder)
+    done = subprocess.run([shell, setup], capture_output=True, text=True, check=False)
+    line = done.stderr.rstrip("\n").partition("Type: ")[2]
+    typed = subprocess.run([shell, "-c", line], capture_output=True, text=True, check=False)
+    assert (typed.stdout, typed.stderr) == ("sourced\n", "")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh"])
 def test_a_command_that_the_system_does_not_run_is_explained(shell: str, tmp_path: Path) -> None:
     """A file without the permission to run stands for a file system that is mounted with the option noexec."""
     if shutil.which(shell) is None:
