@@ -22,7 +22,9 @@ TIMESTAMP = "timestamp.txt"
 SECRET = "submission_secret.txt"
 """The file with the secret of a submission. The secret determines the name of the page with the feedback."""
 MOST_TIMESTAMP = 100
-"""The maximum size of the file with the time or with the secret of a submission (bytes)."""
+"""The maximum size of the file with the time of a submission (bytes)."""
+MOST_SECRET = 1000
+"""The maximum size of the file with the secret of a submission (bytes). `nbgrader submit` writes 128 bytes."""
 YEARS = range(2000, 2100)
 """The years in which a time is valid. A time in the year 9999 could make nbgrader's formgrader fail for the whole
 class, because of time zones."""
@@ -70,7 +72,7 @@ def require_listable(folder: Path) -> None:
         _content(path, MOST_BYTES)
     secret = folder / SECRET
     if os.path.lexists(secret):
-        _content(secret, MOST_TIMESTAMP).decode()
+        _content(secret, MOST_SECRET).decode()
 
 
 def notebook(path: Path) -> str:

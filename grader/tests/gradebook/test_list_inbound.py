@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import secrets
 from typing import TYPE_CHECKING
 
 from grader.tests.gradebook.term import FIRST, STEP, Term
@@ -14,10 +15,11 @@ if TYPE_CHECKING:
 
 SECRET = "submission_secret.txt"
 CHANGES: dict[str, Callable[[Path], object]] = {
-    "anna": lambda folder: (folder / SECRET).write_text("a"),
+    "anna": lambda folder: (folder / SECRET).write_text(secrets.token_hex(64)),  # as `nbgrader submit` does
     "bytes": lambda folder: (folder / SECRET).write_bytes(b"\xff\xfe"),
     "endless": lambda folder: (folder / SECRET).symlink_to("/dev/zero"),
     "folder": lambda folder: (folder / "more.ipynb").mkdir(),
+    "large": lambda folder: (folder / SECRET).write_text("a" * 1001),
     "pipe": lambda folder: os.mkfifo(folder / "more.ipynb"),
     "gone": lambda folder: (folder / "more.ipynb").symlink_to("nowhere"),
     "line\nbreak": lambda _: None,
