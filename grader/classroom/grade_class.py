@@ -15,11 +15,9 @@ from grader.classroom.progress_display import screen, summary
 from grader.classroom.roster import read_owners
 from grader.common.words import a_list, count
 from grader.errors import MachineError, UsageError
-from grader.exercise.own_numbers import normal_id
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.sandbox import bubblewrap
-from grader.submission.tree import shown as shown_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -69,12 +67,12 @@ def grade_found(
 ) -> list[Result]:
     """Grade submissions that have already been found. Raises the same exceptions as `grade_class`."""
     local = _engine_is_known(request)
-    roster = read_owners(request.roster) if request.roster else {}
+    owners = read_owners(request.roster) if request.roster else None
     beside = passed_over(request.submissions, request.out)
     sources = sources_for(found, request.checks)
     order = Order(
         found=found,
-        roster=roster,
+        roster=owners.students if owners else {},
         sources=sources,
         ros=_ros(local=local, tell=tell),
         clock=request.clock,
@@ -92,12 +90,8 @@ def grade_found(
         say(_reported(kept, todo))
         if beside:
             say(f"Ignored: {a_list(beside)} {'is not a submission' if len(beside) == 1 else 'are not submissions'}.")
-        unlisted = [shown_name(each.student) for each in found if roster and normal_id(each.student) not in roster]
-        if unlisted:
-            say(
-                f"Submissions that are not in the roster: {a_list(unlisted)}. Individual numbers, if the exercise has "
-                "any, are derived from the name of the folder or archive."
-            )
+        for remark in owners.remarks(each.student for each in found) if owners else ():
+            say(remark)
         graded: list[Result] = []
         if todo:
             engine = _engine(request, local=local)

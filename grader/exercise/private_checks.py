@@ -15,7 +15,7 @@ import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.common.words import a_list, nearest
+from grader.common.words import a_list, nearest, shorten
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, of_older_schema, parse_tables
 from grader.exercise.model import FILE_NAME, catalogue
@@ -112,16 +112,24 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
         mistake = f'unknown key "{unknown[0]}"' if unknown else schema
         message = f"{name}: {mistake}. A file of private checks may contain {a_list(ALLOWED)}."
         raise UsageError(message)
-    trials = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
+    own_trials = _tables(private, "trial", name)
+    _require_different_ids(own_trials, "trial", name)
+    trials = _laid_over(list(public.get("trial", [])), own_trials)
     checks = expand(public.get("check", []), trials)
     known = {each.get("id"): each for each in checks}
     own = expand(_tables(private, "check", name), trials)
+    _require_different_ids(own, "check", name)
     above = [{"hidden": True, **each} if _is_secret(each, known.get(each.get("id"))) else each for each in own]
     return {**public, "trial": trials, "check": _laid_over(checks, above)}
 
 
 def _is_secret(private: Mapping[str, Any], public: Mapping[str, Any] | None) -> bool:
-    """Return whether a private check is new, or judges something other than the course's check with the same id."""
+    """Return whether a private check is new, or judges something other than the course's check with the same id.
+
+    A preset that contains a mistake has not been expanded, and stays as it is for the message about the mistake.
+    """
+    if "preset" in private:
+        return False
     if public is None:
         return True
     return any(value != public.get(key) for key, value in private.items() if key not in _SHOWN)
@@ -133,6 +141,15 @@ def _tables(private: Mapping[str, Any], key: str, name: str) -> list[dict[str, A
         message = f'{name}: "{key}" must be an array of tables, [[{key}]].'
         raise UsageError(message)
     return value
+
+
+def _require_different_ids(tables: list[dict[str, Any]], key: str, name: str) -> None:
+    """Raise UsageError if two tables have the same id: the second would silently override the first."""
+    ids = [each["id"] for each in tables if isinstance(each.get("id"), str)]
+    twice = next((each for number, each in enumerate(ids) if each in ids[:number]), None)
+    if twice is not None:
+        message = f'{name}: two tables [[{key}]] have the id "{shorten(twice)}". Merge them, or change one of the ids.'
+        raise UsageError(message)
 
 
 def _laid_over(below: list[dict[str, Any]], above: list[dict[str, Any]]) -> list[dict[str, Any]]:

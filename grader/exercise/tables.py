@@ -23,10 +23,17 @@ SETTING = (bool, int, float, str)
 
 
 def read_toml(data: bytes, name: str) -> dict[str, Any]:
-    """Return the tables of a TOML file. Raises UsageError if the file is not TOML."""
+    """Return the tables of a TOML file. Raises UsageError if the file is not TOML.
+
+    Some editors on Windows write a byte order mark, which is not part of TOML and is ignored.
+    """
     try:
-        return tomllib.loads(data.decode("utf-8"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        return tomllib.loads(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        message = f"{name}: invalid TOML: line {line} is not UTF-8. Save the file as UTF-8."
+        raise UsageError(message) from error
+    except tomllib.TOMLDecodeError as error:
         message = f"{name}: invalid TOML: {error}."
         raise UsageError(message) from error
 

@@ -25,13 +25,24 @@ def file(tmp_path: Path) -> Path:
         "submission,student\nteam 1,ada\nteam 2,bob\n",
         "\ufeffsubmission,student\nteam 1,ada\nteam 2,bob\n",
         "\r\nsubmission;student\r\nteam 1;ada\r\nteam 2;bob\r\n",
+        "sep=;\r\nsubmission;student\r\nteam 1;ada\r\nteam 2;bob\r\n",
+        '"sep=\t"\nsubmission\tstudent\nteam 1\tada\nteam 2\tbob\n',
+        "submission\tstudent\nteam 1\tada\nteam 2\tbob\n",
         '\n Student , Room,SUBMISSION\n"ada","1, left",  team 1\n\n,,\nbob,2,team 2,,\n',
     ],
-    ids=["plain", "byte order mark", "semicolons", "spaces, capitals, quotes and other columns"],
+    ids=[
+        "plain",
+        "byte order mark",
+        "semicolons",
+        "Excel",
+        "Excel with tabs",
+        "tabs",
+        "spaces, capitals, quotes and other columns",
+    ],
 )
 def test_rosters_of_common_spreadsheets_are_read(file: Path, text: str) -> None:
     file.write_text(text, encoding="utf-8", newline="")
-    assert read_owners(file) == {"team 1": "ada", "team 2": "bob"}
+    assert read_owners(file).students == {"team 1": "ada", "team 2": "bob"}
 
 
 def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: Path) -> None:
@@ -47,6 +58,9 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
     [
         (b"", 'the column "id" once, and perhaps name and email, but it is "".'),
         (b"ada,Ada\nbob,Bob\n", 'but it is "ada,Ada".'),
+        (b"ident;name\nada;Ada\n", 'but it is "ident;name".'),
+        (b"sep=;\nident;name\nada;Ada\n", 'but it is "ident;name".'),
+        (b"sep=;\nid;name\n;Ada\n", "line 3: the id is missing"),
         (b"id,name,id\nada,Ada,a1\n", 'but it is "id,name,id".'),
         (b"id,name\n\n", "it contains only the column names"),
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
@@ -76,7 +90,7 @@ def test_a_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:
 def test_a_submission_finds_its_student_in_any_spelling(file: Path, tmp_path: Path) -> None:
     file.write_text("submission,student\nTeam Zo\u00eb,ada\n", encoding="utf-8")
     found = Found("team zoe\u0308", STEP, tmp_path)
-    order = Order(found=(found,), roster=read_owners(file), sources=sources_for((found,), None), ros="none")
+    order = Order(found=(found,), roster=read_owners(file).students, sources=sources_for((found,), None), ros="none")
     assert order.task(found).owner == "ada"
 
 
@@ -89,3 +103,16 @@ def test_a_name_that_is_not_in_the_roster_changes_no_terminal(tmp_path: Path, fi
     assert "eve" in line
     assert "Ignored: notes.txt is not a submission." in done.stdout
     assert all(char.isprintable() for char in line)
+
+
+def test_remarks_compare_the_roster_with_the_submissions(file: Path) -> None:
+    file.write_text("submission,student\nTeam 1,ada\nteam1_old,Ada\nTeam 2.zip,bob\n")
+    unlisted, missing, same = read_owners(file).remarks(["team 1", "team1_old", "Team 2"])
+    assert unlisted.startswith("Submissions that are not in the roster: Team 2. ")
+    assert missing.startswith("In the roster, but not among the submissions: Team 2.zip. ")
+    assert same == "In the roster, team 1 and team1_old belong to the same student. Each of them has its own result."
+
+
+def test_a_complete_roster_needs_no_remark(file: Path) -> None:
+    file.write_text("submission,student\nteam 1,ada\nteam 2,bob\n")
+    assert not list(read_owners(file).remarks(["team 2", "Team 1", "Team 1"]))

@@ -53,7 +53,8 @@ hidden = false
 
 
 def merged(private: str) -> Exercise:
-    return exercise_from(Sources(STEP, PUBLIC.read_bytes(), private.encode(), "mine/exercise.toml"))
+    data = private.encode("utf-8", "surrogateescape")
+    return exercise_from(Sources(STEP, PUBLIC.read_bytes(), data, "mine/exercise.toml"))
 
 
 def test_the_same_id_replaces_and_a_new_one_is_added() -> None:
@@ -106,6 +107,16 @@ def test_both_files_are_part_of_the_digest() -> None:
         ("schema = 2\n[[check]]\nid = 'rate'\nrate_hz = 'fast'", '"rate_hz" is "fast"'),
         ("schema = 2\ncheck = 3", "must be an array of tables"),
         ("schema = ", "invalid TOML"),
+        ("schema = 2\n# caf\udce9", "line 2 is not UTF-8"),
+        ("schema = 2\n[[check]]\npreset = 'node'\npoints = 3", 'unknown key "points"'),
+        (
+            "schema = 2\n[[check]]\nid = 'rate'\npoints = 1\n[[check]]\nid = 'rate'\npoints = 2",
+            'two tables [[check]] have the id "rate"',
+        ),
+        (
+            "schema = 2\n[[trial]]\nid = 'circle'\nduration_s = 1\n[[trial]]\nid = 'circle'\nduration_s = 2",
+            'two tables [[trial]] have the id "circle"',
+        ),
     ],
 )
 def test_a_mistake_is_reported_with_the_file(private: str, said: str) -> None:
@@ -113,6 +124,10 @@ def test_a_mistake_is_reported_with_the_file(private: str, said: str) -> None:
         merged(private)
     assert said in str(error.value)
     assert "mine/exercise.toml" in str(error.value)
+
+
+def test_a_byte_order_mark_is_ignored() -> None:
+    assert merged(f"\ufeff{PRIVATE}").checks == merged(PRIVATE).checks
 
 
 def test_a_folder_for_no_exercise_of_ours_is_reported(tmp_path: Path) -> None:
