@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_of_folder, find_exercise
@@ -36,10 +37,11 @@ def meant(
         message = f"There is no folder {place}. Give the folder of your package, or a step such as 03."
         raise UsageError(message)
     if known is None:
-        message = (
-            f"Which exercise is {place.resolve().name} for? {advice}, one of: "
-            f"{', '.join(catalogue())}. "
-            "Or start a step in your workspace: `grader start 01`."
+        current = steps.current(folder)
+        message = f"Which exercise is {place.resolve().name} for? {advice}, one of: {', '.join(catalogue())}. " + (
+            f"Without a path, the command uses your current step, {current[0].id}, in {current[1]}."
+            if current is not None
+            else "Or start a step in your workspace: `grader start 01`."
         )
         raise UsageError(message)
     return known, place
@@ -79,12 +81,30 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
 def _check_there(step: Exercise, place: Path) -> None:
     if not place.is_dir():
         start = f"grader start {step.id[:2]}"
+        renamed = _renamed(place)
+        cause = (
+            f"If {renamed} is your package, type `{_rename_command(renamed, place)}`."
+            if renamed is not None
+            else "If you moved your workspace, type "
+            f"`export ROS2_WORKSPACE=NEW_PATH` and `{start}`, which overwrites nothing."
+        )
         message = (
-            f"The folder of your step, {place}, no longer exists. If you moved your workspace, type "
-            f"`export ROS2_WORKSPACE=NEW_PATH` and `{start}`, which overwrites nothing. To begin the step again, "
-            f"type `{start}`."
+            f"The folder of your step, {place}, no longer exists. {cause} To begin the step again, type `{start}`."
         )
         raise UsageError(message)
+
+
+def _renamed(place: Path) -> Path | None:
+    """Return the only folder beside the missing folder `place` that contains a package.xml, or None."""
+    try:
+        found = [each.parent for each in place.parent.glob("*/package.xml")]
+    except OSError:
+        return None
+    return found[0] if len(found) == 1 else None
+
+
+def _rename_command(old: Path, new: Path) -> str:
+    return f"mv {quote(str(old))} {quote(str(new))}"
 
 
 def open_package(place: Path, exercise: Exercise | None, *, typed: bool) -> Submission:
@@ -124,5 +144,8 @@ def existing_work(exercise: Exercise, root: Path) -> Path:
     place = workspace.work_folder(exercise, root)
     if not place.is_dir():
         message = f"There is no folder {place}. `grader start {exercise.id[:2]}` creates it."
+        renamed = _renamed(place)
+        if renamed is not None:
+            message += f" If your package is {renamed}, type `{_rename_command(renamed, place)}` instead."
         raise UsageError(message)
     return place

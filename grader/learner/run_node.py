@@ -14,6 +14,7 @@ import time
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import load_exercise
@@ -56,7 +57,8 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     """
     if step and executable is None and not Path(step).exists():
         _refuse_program_as_step(step)
-    exercise, place = meant(Path(step) if step else None, None, workspace, advice="Type `grader run STEP`")
+    advice = f"Type `grader run STEP{_workspace_option(Path(step)) if step else ''}`"
+    exercise, place = meant(Path(step) if step else None, None, workspace, advice=advice)
     names = executables(exercise)
     if not names:
         message = f"{exercise.id} has no node to run. `grader sim --view` starts turtlesim without a node."
@@ -70,6 +72,18 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     inside = place / exercise.package
     folder = inside if (inside / "package.xml").is_file() else place
     return Program(folder.resolve(), exercise.package, name)
+
+
+def _workspace_option(path: Path) -> str:
+    """Return the option for the workspace that contains the package in `path`, or an empty string.
+
+    `path` is the folder of the package, the folder src, or the workspace.
+    """
+    given = path.resolve()
+    for root in (given, given.parent, given.parent.parent):
+        if given in (root, root / "src", *(root / "src").glob("*")) and any(root.glob("src/*/package.xml")):
+            return f" --workspace {quote(str(root))}"
+    return ""
 
 
 def _refuse_program_as_step(name: str) -> None:

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -93,3 +96,34 @@ def test_a_workspace_that_was_moved_names_the_two_ways_on(workspace: Path, typed
     assert guessed(None, None, moved) == (None, Path()), "progress belongs to the path of the workspace"
     steps.start("3", moved)
     assert guessed(None, None, moved)[1] == moved / "src/my_robot_controller"
+
+
+@pytest.mark.parametrize("typed", [None, "{}/src", "03"])
+def test_a_package_whose_folder_was_renamed_names_the_command_that_renames_it_back(
+    workspace: Path, typed: str | None
+) -> None:
+    package = workspace / "src/my_robot_controller"
+    renamed = package.rename(package.with_name("my robot"))
+    with pytest.raises(UsageError) as caught:
+        guessed(Path(typed.format(workspace)) if typed else None, None)
+    (command,) = re.findall(r"`(mv [^`]*)`", str(caught.value))
+    subprocess.run(command, shell=True, check=True)
+    assert not renamed.exists()
+    assert guessed(Path(typed.format(workspace)) if typed else None, None)[1] == package
+
+
+def test_of_two_other_packages_none_is_taken_for_the_renamed_one(workspace: Path) -> None:
+    package = workspace / "src/my_robot_controller"
+    shutil.copytree(package, package.with_name("one"))
+    package.rename(package.with_name("two"))
+    with pytest.raises(UsageError) as caught:
+        guessed(None, None)
+    assert "mv " not in str(caught.value)
+
+
+def test_who_has_started_a_step_is_not_sent_to_the_first_one(workspace: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere/package.xml").touch()
+    with pytest.raises(UsageError) as caught:
+        meant(Path(), None)
+    assert "grader start 01" not in str(caught.value)
+    assert f"your current step, 03-circle-publisher, in {workspace}/src/my_robot_controller." in str(caught.value)

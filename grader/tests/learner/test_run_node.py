@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -11,6 +13,7 @@ import pexpect
 import pytest
 
 from grader.errors import UsageError
+from grader.learner import steps
 from grader.learner.run_node import program_of
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
@@ -93,6 +96,18 @@ def test_a_node_that_a_signal_ends_names_the_signal(learner: Learner) -> None:
 def test_a_folder_that_names_no_step_asks_for_a_step(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"Type `grader run STEP`, one of: 01-first-node"):
         program_of(str(tmp_path), None, tmp_path / "no_ws")
+
+
+@pytest.mark.parametrize("typed", ["", "src", "src/my_robot_controller"])
+def test_a_package_in_another_workspace_names_this_workspace(tmp_path: Path, typed: str) -> None:
+    other = tmp_path / "my ws"
+    steps.start("03", other)
+    with pytest.raises(UsageError) as caught:
+        program_of(str(other / typed), None, tmp_path / "no_ws")
+    (command,) = re.findall("`(grader run STEP [^`]*)`", str(caught.value))
+    grader, run, step, option, workspace = shlex.split(command)
+    assert (grader, run, step, option) == ("grader", "run", "STEP", "--workspace")
+    assert program_of("03", None, Path(workspace)).folder == other / "src/my_robot_controller"
 
 
 def test_a_failed_build_shows_the_messages_of_colcon(learner: Learner) -> None:
