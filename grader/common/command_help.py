@@ -19,12 +19,14 @@ from typer.core import TyperArgument, TyperCommand, TyperGroup
 
 from grader.common.other_words import command_for, with_exercise
 from grader.common.terminal_text import example
+from grader.common.typing_slips import slip
 from grader.common.words import printable
 from grader.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+HELP = ("--help", "-h")
 WIDE = 80
 """The number of columns that typer's tables need."""
 
@@ -33,14 +35,32 @@ class Command(TyperCommand):
     """A command whose help fits every terminal."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # noqa: ANN401 - typer brings its own click
-        """Parse the arguments. Raises UsageError if they are a package and a step, without --exercise."""
+        """Parse the arguments.
+
+        Raises UsageError if they are a package and a step, without --exercise, if there are too many, or if their
+        dashes or quotation marks are not those of a keyboard.
+        """
         words = list(args)
+        if ctx.resilient_parsing:  # the shell requests completions
+            return super().parse_args(ctx, args)
+        wrong = slip(ctx.command_path, words, [*(name for param in self.params for name in _names(param)), *HELP])
+        if wrong:
+            raise UsageError(wrong)
         if len(words) == 2 and any("--exercise" in param.opts for param in self.params):
             meant = with_exercise(ctx.command_path, words)
             if meant:
                 message = f"`{ctx.command_path}` takes one package. Name its step with an option: {meant}"
                 raise UsageError(message)
-        return super().parse_args(ctx, args)
+        refuses, ctx.allow_extra_args = not ctx.allow_extra_args, True
+        rest = super().parse_args(ctx, args)
+        if rest and refuses:
+            usage = " ".join(self.collect_usage_pieces(ctx))
+            message = (
+                f"{printable(' '.join(rest))} is more than `{ctx.command_path}` takes. Expected: {ctx.command_path} "
+                f"{usage}. More about it: {ctx.command_path} --help"
+            )
+            raise UsageError(message)
+        return rest
 
     def format_help(self, ctx: Any, formatter: Any) -> None:  # noqa: ANN401 - typer brings its own click
         """Print the help of the command."""
@@ -52,6 +72,9 @@ class Group(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:  # noqa: ANN401 - as above
         """Find the command. Raises UsageError for a word that users type when they mean another command."""
+        wrong = slip(ctx.command_path, args, HELP)
+        if wrong:
+            raise UsageError(wrong)
         meant = command_for(args[0]) if ctx.parent is None and args[0] not in self.commands else ""
         if meant:
             message = f"There is no command {printable(args[0])}. Type: {meant}"
@@ -72,6 +95,10 @@ class App(typer.Typer):
     def command(self, name: str | None = None, **options: Any) -> Callable[[Any], Any]:  # noqa: ANN401 - as above
         """Return a decorator that adds a command to the application."""
         return super().command(name, cls=Command, **options)
+
+
+def _names(param: Any) -> list[str]:  # noqa: ANN401 - typer brings its own click
+    return [] if isinstance(param, TyperArgument) else [*param.opts, *param.secondary_opts]
 
 
 def _format_help(

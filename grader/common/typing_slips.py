@@ -1,0 +1,82 @@
+"""Mistakes in the words of a command line that word processors and web pages cause, and paths with missing quotes."""
+
+# ruff: noqa: RUF001, RUF002 - these are the characters to find
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+DASHES = "-‐‑‒–—―−﹣－"
+_OPENING = "“„”‘‚’«»"
+_CLOSING = "”“’‘»«"
+
+
+def slip(command: str, words: Sequence[str], options: Collection[str]) -> str:
+    """Return a message about a typographic dash, typographic quotation marks or a path without quotes, or "".
+
+    `words` are the words after `command`, and `options` are its options, such as "--html". The message ends with the
+    command line that works.
+
+    Example:
+        >>> slip("grader check", ["–html", "x.html"], ["--html"]).partition("Type: ")[2]
+        'grader check --html x.html'
+    """
+    fixed = [_option(word, options) or word for word in words]
+    if fixed != list(words):
+        first = next(word for word, right in zip(words, fixed, strict=True) if word != right)
+        return (
+            f"{first.partition('=')[0]} begins with a typographic dash, as word processors and web pages write it. "
+            f"Options begin with minus signs. Type: {_line(command, fixed)}"
+        )
+    fixed = _without_quotes(words)
+    if fixed != list(words):
+        return (
+            "The quotation marks are typographic, as word processors and web pages write them, and the shell does not "
+            f"know them. Type: {_line(command, fixed)}"
+        )
+    fixed = _joined(words)
+    if fixed != list(words):
+        return f"A path with spaces needs quotation marks. Type: {_line(command, fixed)}"
+    return ""
+
+
+def _line(command: str, words: Sequence[str]) -> str:
+    return f"{command} {shlex.join(words)}"
+
+
+def _option(word: str, options: Collection[str]) -> str:
+    """Return the option that a word with typographic dashes stands for, or "" if it stands for none."""
+    name = word.lstrip(DASHES)
+    if word == name or word[: len(word) - len(name)].strip("-") == "":
+        return ""
+    option = f"--{name}" if len(name.partition("=")[0]) > 1 else f"-{name}"
+    return option if option.partition("=")[0] in options and not Path(word).exists() else ""
+
+
+def _without_quotes(words: Sequence[str]) -> list[str]:
+    """Return the words with the typographic quotation marks removed. The words between two of them become one."""
+    for first, opening in enumerate(words):
+        if not opening or opening[0] not in _OPENING or Path(opening).exists():
+            continue
+        for last in range(first, len(words)):
+            whole = " ".join(words[first : last + 1])
+            if len(whole) > 2 and whole[-1] in _CLOSING:
+                # The shell does not replace ~ after such a quotation mark, or between the quotation marks of a shell.
+                inner = str(Path(whole[1:-1]).expanduser())
+                return [*words[:first], inner, *_without_quotes(words[last + 1 :])]
+    return list(words)
+
+
+def _joined(words: Sequence[str]) -> list[str]:
+    """Return the words, with the words of a path that exists if they are joined by spaces as one word."""
+    for first in range(len(words)):
+        for last in range(len(words), first + 1, -1):
+            parts = words[first:last]
+            if not all(Path(part).exists() for part in parts) and Path(" ".join(parts)).exists():
+                return [*words[:first], " ".join(parts), *words[last:]]
+    return list(words)
