@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
 DASHES = "-‐‑‒–—―−﹣－"
+_WITH_DASH = re.compile(f"[{re.escape(DASHES)}]+[A-Za-z][\\w-]*(=\\S*)?")
 _OPENING = "“„”‘‚’«»"
 _CLOSING = "”“’‘»«"
 
@@ -45,17 +47,60 @@ def slip(command: str, words: Sequence[str], options: Collection[str]) -> str:
     return ""
 
 
+def hint(words: Sequence[str]) -> str:
+    """Return a sentence about such a mistake in the words of a command that has failed, or "".
+
+    In contrast to `slip`, the options of the command are not known. A value in braces without quotation marks counts,
+    too.
+
+    Example:
+        >>> hint(["topic", "list", "–t"])
+        '–t begins with a typographic dash. Type: -t'
+    """
+    for word in words:
+        if _WITH_DASH.fullmatch(word) and _has_typographic_dash(word):
+            return f"{word} begins with a typographic dash. Type: {_with_minus_signs(word)}"
+    straight = _without_quotes(words)
+    if straight != list(words):
+        changed = next(new for new, old in zip(straight, words, strict=False) if new != old)
+        return f"The quotation marks are typographic. Type straight ones: {shlex.quote(changed)}"
+    return next((f"A value with spaces needs quotation marks. Type: {shlex.quote(each)}" for each in _split(words)), "")
+
+
+def _split(words: Sequence[str]) -> Iterator[str]:
+    """Yield each value that begins with a brace and that is spread over several words, joined by spaces."""
+    for first, word in enumerate(words):
+        for last in range(first + 1, len(words) if word.startswith("{") and _open_braces(word) > 0 else 0):
+            whole = " ".join(words[first : last + 1])
+            if _open_braces(whole) == 0:
+                yield whole
+                break
+
+
+def _open_braces(text: str) -> int:
+    return text.count("{") - text.count("}")
+
+
 def _line(command: str, words: Sequence[str]) -> str:
     return f"{command} {shlex.join(words)}"
 
 
 def _option(word: str, options: Collection[str]) -> str:
     """Return the option that a word with typographic dashes stands for, or "" if it stands for none."""
-    name = word.lstrip(DASHES)
-    if word == name or word[: len(word) - len(name)].strip("-") == "":
+    if not _has_typographic_dash(word):
         return ""
-    option = f"--{name}" if len(name.partition("=")[0]) > 1 else f"-{name}"
+    option = _with_minus_signs(word)
     return option if option.partition("=")[0] in options and not Path(word).exists() else ""
+
+
+def _has_typographic_dash(word: str) -> bool:
+    """Return whether the dashes at the beginning of the word are not only minus signs."""
+    return word[: len(word) - len(word.lstrip(DASHES))].strip("-") != ""
+
+
+def _with_minus_signs(word: str) -> str:
+    name = word.lstrip(DASHES)
+    return f"--{name}" if len(name.partition("=")[0]) > 1 else f"-{name}"
 
 
 def _without_quotes(words: Sequence[str]) -> list[str]:

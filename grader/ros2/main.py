@@ -58,17 +58,19 @@ def run(arguments: Sequence[str] | None = None) -> int:
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, _end)
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         hand_over("ros2", "ros2cli")
         see_to_environment({"rclpy", "turtlesim"})
         # With this setting, an invalid value raises an error that names the field before the message is sent.
         os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
-        code = _run_verb(sys.argv[1:] if arguments is None else list(arguments))
+        code = _run_verb(words)
         sys.stdout.flush()
     except GraderError as error:
         sys.stdout.flush()
         if str(error):
             _report(str(error))
+            _report_slip(words)
         return error.exit_code
     except KeyboardInterrupt as error:
         _forget_the_terminal()
@@ -95,6 +97,15 @@ def _report(text: str) -> None:
         say(text)
 
 
+def _report_slip(words: Sequence[str]) -> None:
+    """After an error, name a typographic dash or quotation mark, or missing quotation marks, if there are any."""
+    from grader.common.typing_slips import hint
+
+    found = hint(words)
+    if found:
+        _report(found)
+
+
 def _run_verb(words: list[str]) -> int:
     if "_ARGCOMPLETE" in os.environ:
         _complete()
@@ -104,6 +115,8 @@ def _run_verb(words: list[str]) -> int:
     try:
         args = make_parser(words).parse_args(words)
     except SystemExit as done:  # argparse has printed the help or an error
+        if done.code:
+            _report_slip(words)
         return int(done.code or 0)
     if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
         # As in the real ros2, output to a pipe is flushed after each line.

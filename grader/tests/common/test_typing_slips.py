@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from grader.cli import app
-from grader.common.typing_slips import slip
+from grader.common.typing_slips import hint, slip
 from grader.errors import UsageError
 
 if TYPE_CHECKING:
@@ -104,3 +104,11 @@ def test_a_word_too_many_names_the_words_that_the_command_takes() -> None:
     assert said.startswith("4 is more than `grader check` takes. Expected: grader check [OPTIONS] ")
     assert said.endswith("grader check --help")
     assert error("status", "3").startswith("3 is more than `grader status` takes.")
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["topic list -t", "topic echo /a --once", "pub '{x: 1}' '{y: 2}'", "pub '– hello'", "a {}", "{ a", "“a b", "it’s"],
+)
+def test_after_other_errors_there_is_no_hint(line: str) -> None:
+    assert hint(shlex.split(line)) == ""

@@ -1,5 +1,7 @@
 """Wrong commands print the reason, the nearest name and an exit code, but never a traceback."""
 
+# ruff: noqa: RUF001 - some commands have typographic dashes
+
 from __future__ import annotations
 
 from types import SimpleNamespace
@@ -79,6 +81,11 @@ FILES_ONLY = {
     "ros2 topic echo /a --field .": (1, ["Invalid field value '.'"]),
     "ros2 topic echo /a//b": (1, ["Invalid topic name"]),
     "ros2 topic list -a": (2, ["ros2: error: unrecognized arguments: -a"]),
+    "ros2 topic list –t": (2, ["unrecognized arguments: –t", "–t begins with a typographic dash. Type: -t"]),
+    "ros2 topic echo /a —once": (1, ["—once begins with a typographic dash. Type: --once"]),
+    f"{PUB} “{{linear: {{x: 2.0}}}}”": (2, ["typographic. Type straight ones: '{linear: {x: 2.0}}'"]),
+    f"{PUB} “{{}}”": (1, ["needs to be a dictionary in YAML format", "Type straight ones: '{}'"]),
+    f"{PUB} {{linear: {{x: 2.0}}}}": (2, ["A value with spaces needs quotation marks. Type: '{linear: {x: 2.0}}'"]),
     f"{PUB} '{{linear: {{x: 2.0}}'": (1, ["not YAML", "expected ',' or '}'"]),
     f"{PUB} '{{linear: [}}'": (1, ["not YAML"]),
     f"{PUB} 'linear'": (1, ["needs to be a dictionary in YAML format"]),
