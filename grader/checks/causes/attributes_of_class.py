@@ -15,6 +15,9 @@ from grader.submission.constants import dotted
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene, Function
 
+_WITHOUT_PUBLISH = ("create_subscription", "create_timer", "create_client", "create_service", "create_rate")
+"""Methods of a node that return an object without a method publish."""
+
 
 def of_super(scene: CrashScene, name: str) -> Cause | None:
     """Return the cause if the line calls a misspelt __init__ of super(), else None."""
@@ -65,4 +68,18 @@ def members(scene: CrashScene, own: ast.ClassDef) -> set[str]:
         name
         for each in family
         for name in (*(method.name for method in methods(each)), *(attribute for attribute, _ in attributes_set(each)))
+    }
+
+
+def without_publish(scene: CrashScene, own: ast.ClassDef, name: str) -> set[str]:
+    """If the line calls self.NAME.publish, return the attributes of the class that have no method publish."""
+    if not any(dotted(call.func) == f"self.{name}.publish" for call in scene.calls_on_line("publish")):
+        return set()
+    made = [node for node in ast.walk(own) if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)]
+    return {
+        target.attr
+        for node in made
+        if (dotted(node.value.func) or "").rpartition(".")[2] in _WITHOUT_PUBLISH  # type: ignore[attr-defined]
+        for target in node.targets
+        if isinstance(target, ast.Attribute)
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+MANGLED = re.compile(r"^_(?P<of>[A-Za-z]\w*?)__(?=[a-zA-Z])")
+"""The prefix that Python adds to a name that begins with two underscores and is used in a class."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,12 @@ class CrashScene:
         """The class that contains the line, or None."""
         inside = [each for each in self.classes if each.lineno <= self.line <= _end(each)]
         return inside[-1] if inside else None
+
+    def written(self, name: str) -> str:
+        """Return a name in a message as it is in the source. Python adds a prefix to a name such as __speed."""
+        mangled = MANGLED.match(name)
+        own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in self.classes)
+        return MANGLED.sub("__", name) if own else name
 
     @property
     def function(self) -> Function | None:

@@ -12,8 +12,16 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import no_entry_point, ros_names
 from grader.checks.causes.attribute_of_none import attribute_of_none
-from grader.checks.causes.attributes_of_class import members, needs_itself, of_rclpy, of_super, uncalled_init
+from grader.checks.causes.attributes_of_class import (
+    members,
+    needs_itself,
+    of_rclpy,
+    of_super,
+    uncalled_init,
+    without_publish,
+)
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.why_init_call import misspelt_init
 from grader.checks.causes.why_no_field import why_no_field
 from grader.checks.causes.why_not_set import compared
 from grader.checks.causes.why_other_object import (
@@ -41,8 +49,6 @@ OF_THE_NODE = re.compile(
     r"|can't set attribute '(\w+)'"
 )
 """Matches messages of rclpy, and of Python 3.10 to 3.14, about a property that cannot be assigned."""
-MANGLED = re.compile(r"^_(?P<of>[A-Za-z]\w*?)__(?=[a-zA-Z])")
-"""The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {
     "str": "a string",
     "int": "an integer",
@@ -69,7 +75,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
         return None
     if match["object"] == "super":
         return of_super(scene, match["name"])
-    name = _written_name(scene, match["name"])
+    name = scene.written(match["name"])
     if match["module"]:
         return _of_module(scene, match["module"], name)
     owner = match["object"] or match["type"]
@@ -93,13 +99,6 @@ def _without_setter(scene: CrashScene, name: str) -> Cause | None:
     if not any(isinstance(node, ast.Attribute) and dotted(node) == f"self.{name}" for node in scene.on_line):
         return None
     return Cause("name-of-node", f"Every node already has an attribute named {name}. Choose another name.")
-
-
-def _written_name(scene: CrashScene, name: str) -> str:
-    """Return the name as it is in the source, without the prefix that Python adds to a name such as __speed."""
-    mangled = MANGLED.match(name)
-    own = mangled is not None and any(each.name.lstrip("_") == mangled["of"] for each in scene.classes)
-    return MANGLED.sub("__", name) if own else name
 
 
 def _is_subclass_elsewhere(scene: CrashScene, owner: str, name: str) -> bool:
@@ -240,7 +239,7 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
         return needs_itself(scene, name)
     if lines:
         text = f"self.{shorten(name)} is assigned on line {min(lines)}, which has not run yet."
-        return Cause("attribute-too-early", text)
+        return misspelt_init(scene, own, lines) or Cause("attribute-too-early", text)
     return _never_set(scene, own, name)
 
 
@@ -281,7 +280,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
     return (
         of_rclpy(scene, name)
-        or _misspelt(scene, name, {*ros_names.NODE, *members(scene, own)})
+        or _misspelt(scene, name, {*ros_names.NODE, *members(scene, own)} - without_publish(scene, own, name))
         or Cause(
             "attribute-missing", f"self.{shorten(name)} is never assigned, and the class has no method with that name."
         )

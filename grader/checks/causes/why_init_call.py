@@ -13,6 +13,8 @@ from grader.common.words import shorten
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from grader.checks.causes.crash_scene import CrashScene
 
 NO_NAME = re.compile(r"\b__init__\(\) missing .*'node_name'")
@@ -84,14 +86,21 @@ def _base_class(scene: CrashScene, text: str) -> Cause | None:
 
 def _init_misspelt(scene: CrashScene) -> Cause | None:
     """Return the cause if the class of the new object has a method whose name is a misspelt __init__, else None."""
-    for own in (each for each in scene.classes if scene.calls_on_line(each.name)):
-        names = {each.name: each for each in methods(own)}
-        found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
-        if "__init__" not in names and found:
-            text = (
-                f"The class has a method {found[0]}, but only __init__ is called when an object is created. Write "
-                "__init__, with two underscores on each side."
-            )
-            place = scene.at(names[found[0]])
-            return Cause("init-misspelt", text, place).fixed_by(at(place, found[0], "__init__"))
-    return None
+    created = (each for each in scene.classes if scene.calls_on_line(each.name))
+    return next(filter(None, (misspelt_init(scene, own) for own in created)), None)
+
+
+def misspelt_init(scene: CrashScene, own: ast.ClassDef, lines: Collection[int] = ()) -> Cause | None:
+    """Return the cause if the class has a misspelt __init__ that contains one of these lines, if any, else None."""
+    names = {each.name: each for each in methods(own)}
+    found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
+    if "__init__" in names or not found:
+        return None
+    method = names[found[0]]
+    if lines and not any(method.lineno <= line <= (method.end_lineno or 0) for line in lines):
+        return None
+    text = (
+        f"The class has a method {found[0]}, but only __init__ is called when an object is created. Write __init__, "
+        "with two underscores on each side."
+    )
+    return Cause("init-misspelt", text, scene.at(method)).fixed_by(at(scene.at(method), found[0], "__init__"))

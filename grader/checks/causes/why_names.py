@@ -51,7 +51,7 @@ def why_no_name(scene: CrashScene) -> Cause | None:
     match = NO_NAME.search(scene.crash.message)
     if match is None:
         return None
-    name = match["name"]
+    name = scene.written(match["name"])
     return (
         comma_for_dot(scene, name)
         or _in_callback(scene, name)

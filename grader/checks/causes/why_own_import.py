@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from grader.checks.causes.crash_scene import CrashScene
+    from grader.evidence.evidence import Evidence
 
 CIRCULAR = re.compile(r"cannot import name '(?P<name>\w+)' from partially initialized module '(?P<module>[\w.]+)'")
 
@@ -37,9 +38,21 @@ def why_no_own_module(scene: CrashScene, name: str) -> Cause | None:
             "folders to install."
         )
         return Cause("module-not-installed", text, Where("setup.py", setup.packages_line))
-    if f"{path}/__init__.py" in {import_path(each) for each in files}:
+    return without_init(scene.evidence, f"{path}/")
+
+
+def without_init(evidence: Evidence, file: str) -> Cause | None:
+    """Return the cause if find_packages leaves out the folder of the file, since it has no __init__.py, else None."""
+    setup = evidence.setup_py
+    if setup is None or not setup.finds_packages:
         return None
-    text = f"The folder {shorten(path)} has no file __init__.py, so the build does not install it."
+    known = {import_path(each) for each in evidence.submission.files}
+    parts = import_path(file).split("/")[:-1]
+    folders = ("/".join(parts[: end + 1]) for end in range(len(parts)))
+    folder = next((each for each in folders if f"{each}/__init__.py" not in known), None)
+    if folder is None:
+        return None
+    text = f"The folder {shorten(folder)} has no file __init__.py, so the build does not install it."
     return Cause("missing-init", text)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.no_entry_point import FORM, indented, line, no_entry_point
 from grader.checks.causes.syntax import unreadable_finding
+from grader.checks.causes.why_own_import import without_init
 from grader.checks.edit import at
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
@@ -70,11 +71,9 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
         cause = "The packages argument of setup() does not list the module's folder, or the folder has no __init__.py."
         if "/" not in file:
             cause = f"{file} is next to setup.py. The file belongs in the folder {evidence.exercise.package}."
-        return failed(
-            observed,
-            f"The entry point {evidence.trial.executable} needs this module.",
-            Cause("module-not-installed", cause, line(evidence)),
-        )
+        why = without_init(evidence, file) or Cause("module-not-installed", cause)
+        expected = f"The entry point {evidence.trial.executable} needs this module."
+        return failed(observed, expected, why.at(line(evidence)))
     module = read_module(file, files[file])
     if module.unreadable is not None:
         return unreadable_finding(file, module.unreadable, files[file])

@@ -54,7 +54,8 @@ def publishes(evidence: Evidence, params: Topic) -> Finding:
         return _silent(evidence, params)
     if on_topic:
         return _wrong_type(evidence, params, on_topic)
-    if publishers:
+    # If the node crashed, publishers of other types may be right, and the crash explains what is missing.
+    if any(publisher.type == params.type for publisher in publishers) or (publishers and crash_of(evidence) is None):
         return _wrong_topic(evidence, params, publishers)
     return _no_publisher(evidence, params)
 

@@ -90,3 +90,18 @@ class Driver(Node):
 def test_only_assignments_of_the_same_variable_are_named(source: str, more: str) -> None:
     given = reported(source, "AttributeError: 'Timer' object has no attribute 'stop'")
     assert given.cause == f"Timer objects have no attribute or method with that name.{more}"
+
+
+@pytest.mark.parametrize(
+    ("made", "line", "diagnosis"),
+    [
+        ("self.sub = self.create_subscription(Twist, 'a', print, 10)", "self.pub.publish(msg)", "attribute-missing"),
+        ("self.sub = self.create_publisher(Twist, 'a', 10)", "self.pub.publish(msg)", "attribute-misspelt"),
+        ("self.sub = self.create_subscription(Twist, 'a', print, 10)", "print(self.pub)", "attribute-misspelt"),
+    ],
+)
+def test_a_subscription_is_not_suggested_for_a_publisher(made: str, line: str, diagnosis: str) -> None:
+    start = f"class Driver(Node):\n    def __init__(self):\n        {made}\n"
+    source = f"{start}    def send(self):\n        {line}  # crashed\n"
+    given = reported(source, "AttributeError: 'Driver' object has no attribute 'pub'")
+    assert given.diagnosis == diagnosis, given.cause

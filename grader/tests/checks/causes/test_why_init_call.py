@@ -105,3 +105,22 @@ def test_a_base_class_in_small_letters_is_told(base: str, *, told: bool) -> None
     )
     found = reported(source, f"NameError: name '{base}' is not defined")
     assert (found.cause == "A similar name exists: Node. Upper and lower case matter.") == told
+
+
+@pytest.mark.parametrize(
+    ("methods", "diagnosis"),
+    [
+        ("    def _init_(self):  # look\n        self.way = 0.0\n", "init-misspelt"),
+        ("    def init(self):  # look\n        self.way = 0.0\n", "init-misspelt"),
+        (
+            "    def _init_(self):  # look\n        self.way = 0.0\n    def reset(self):\n        self.way = 0.0\n",
+            "init-misspelt",
+        ),
+        ("    def __init__(self):\n        pass\n    def init(self):\n        self.way = 0.0\n", "attribute-too-early"),
+        ("    def _init_(self):\n        pass\n    def reset(self):\n        self.way = 0.0\n", "attribute-too-early"),
+    ],
+)
+def test_a_misspelt_init_never_assigns_the_attributes_of_a_class(methods: str, diagnosis: str) -> None:
+    source = f"class Odometer:\n{methods}    def tell(self):\n        return self.way  # crashed\n"
+    found = reported(source, "AttributeError: 'Odometer' object has no attribute 'way'")
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))

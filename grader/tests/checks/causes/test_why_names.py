@@ -50,6 +50,29 @@ def test_what_is_imported_is_a_name(imported: str, name: str, guess: str) -> Non
     assert (found.diagnosis, f"A similar name exists: {guess}." in found.cause) == ("name-misspelt", True)
 
 
+@pytest.mark.parametrize(
+    ("name", "message", "diagnosis", "words"),
+    [
+        ("__send", "_Driver__send", "missing-self", "Inside a method, write self.__send."),
+        ("__sned", "_Driver__sned", "name-misspelt", "A similar name exists: __send."),
+        ("_Other__send", "_Other__send", "name-undefined", "Nothing defines this name before this line."),
+    ],
+)
+def test_a_name_with_two_underscores_is_compared_as_it_is_written(
+    name: str, message: str, diagnosis: str, words: str
+) -> None:
+    source = f"""\
+class _Driver:
+    def __init__(self):
+        self.timer = self.create_timer(1.0, {name}())  # crashed
+
+    def __send(self):
+        pass
+"""
+    found = reported(source, name_error(message))
+    assert (found.diagnosis, words in found.cause) == (diagnosis, True), found.cause
+
+
 @pytest.mark.parametrize("assigned", ["SPEED = 1.0", "SPEED: float = 1.0"])
 def test_a_method_reads_a_name_of_the_class_with_self(assigned: str) -> None:
     source = f"class Driver:\n    {assigned}\n\n    def send(self):\n        print(SPEED)  # crashed\n"

@@ -74,6 +74,12 @@ def leads_to(target: str) -> Build:
         (
             {"my_robot_controller/more/node.py": NODE},
             leads_to("my_robot_controller.more.node:main"),
+            "missing-init",
+            "setup.py:14",
+        ),
+        (
+            {"my_robot_controller/more/node.py": NODE, "my_robot_controller/more/__init__.py": ""},
+            leads_to("my_robot_controller.more.node:main"),
             "module-not-installed",
             "setup.py:14",
         ),
@@ -87,7 +93,8 @@ def test_each_fault_of_the_entry_point(files: Files, build: Build, diagnosis: st
 
 @pytest.mark.parametrize("file", ["draw_circle.py", "my_robot_controller/more/node.py"])
 def test_a_module_next_to_setup_py_is_not_said_to_be_in_a_folder(file: str) -> None:
-    found = of("entry-point", {file: NODE}, leads_to(f"{file.removesuffix('.py').replace('/', '.')}:main"))
+    files: Files = {file: NODE, "my_robot_controller/more/__init__.py": ""}
+    found = of("entry-point", files, leads_to(f"{file.removesuffix('.py').replace('/', '.')}:main"))
     beside = found.cause == "draw_circle.py is next to setup.py. The file belongs in the folder my_robot_controller."
     assert (found.diagnosis, beside) == ("module-not-installed", "/" not in file)
     assert ("does not list the module's folder" in found.cause) == ("/" in file)

@@ -53,6 +53,12 @@ def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None
     assert publishes(other).observed == "The node publishes on /a and /quaff, but turtle1 does not subscribe to them."
 
 
+@pytest.mark.parametrize(("type_", "diagnosis"), [(TEXT, "crash"), (TWIST, "wrong-topic")])
+def test_a_crash_explains_a_missing_publisher_unless_another_has_the_type(type_: str, diagnosis: str) -> None:
+    trial = observed(("publisher", "/speed", type_), end=CRASHED, stderr=Output(TRACEBACK))
+    assert reported(publishes(trial))[0] == diagnosis
+
+
 @pytest.mark.parametrize(
     ("first", "line"),
     [
