@@ -24,7 +24,7 @@ from grader.common.words import printable
 from grader.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator
 
 HELP = ("--help", "-h")
 WIDE = 80
@@ -51,6 +51,9 @@ class Command(TyperCommand):
             if meant:
                 message = f"`{ctx.command_path}` takes one package. Name its step with an option: {meant}"
                 raise UsageError(message)
+        if ctx.allow_extra_args:
+            flags = {name for param in self.params if getattr(param, "is_flag", False) for name in _names(param)}
+            args = [part for word in args for part in _with_separate_value(word, flags)]
         refuses, ctx.allow_extra_args = not ctx.allow_extra_args, True
         rest = super().parse_args(ctx, args)
         if rest and refuses:
@@ -95,6 +98,12 @@ class App(typer.Typer):
     def command(self, name: str | None = None, **options: Any) -> Callable[[Any], Any]:  # noqa: ANN401 - as above
         """Return a decorator that adds a command to the application."""
         return super().command(name, cls=Command, **options)
+
+
+def _with_separate_value(word: str, flags: Collection[str]) -> tuple[str, ...]:
+    """Separate `--view=terminal` into two words, since typer's flags do not take a value."""
+    name, equals, value = word.partition("=")
+    return (name, value) if equals and name in flags else (word,)
 
 
 def _names(param: Any) -> list[str]:  # noqa: ANN401 - typer brings its own click

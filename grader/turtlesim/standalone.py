@@ -42,6 +42,13 @@ _NO_WINDOW = (
     "(a page in the browser) or --view terminal."
 )
 """This text is printed only on a terminal. Otherwise, the output is the same as the output of the real turtlesim."""
+_ANOTHER = (
+    "Another node in this ROS domain has the name {name}. If a second turtlesim is running in another terminal, both "
+    "publish on the same topics, so `ros2 topic hz` shows twice the rate. Stop one of them with Ctrl-C."
+)
+"""This text, too, is printed only on a terminal."""
+_LOOKS_FOR_ANOTHER = 60
+"""The number of frames after which turtlesim looks for another node with its name again."""
 
 
 class Feed(Protocol):
@@ -137,6 +144,7 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
     executor.add_node(node)
     begun = time.monotonic()
     ticks = frames = 0
+    warned = False
     while not stop.is_set():
         early_s = begun + ticks * FRAME_S - time.monotonic()
         if early_s > 0:
@@ -147,6 +155,8 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
             node.frame(frames * FRAME_S)
             frames += 1
         ticks += 1
+        if not warned and ticks % _LOOKS_FOR_ANOTHER == 0 and sys.stderr.isatty():
+            warned = _warn_of_another(node)
         if view is not None:
             view.after_frame(node)
             if not view.open:
@@ -154,6 +164,15 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
                     return
                 node.get_logger().warning("The view has ended. turtlesim continues without it.")
                 view = None
+
+
+def _warn_of_another(node: TurtlesimNode) -> bool:
+    """Print a warning if another node has the same name, and return whether this is the case."""
+    own = (node.get_name(), node.get_namespace())
+    if node.get_node_names_and_namespaces().count(own) < 2:
+        return False
+    print(_ANOTHER.format(name=node.get_fully_qualified_name()), file=sys.stderr, flush=True)
+    return True
 
 
 def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PANEL = "Learn"
+_WORDS = ("--view", "--view terminal", "--view page", "--image", "--port")
 Image = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
     typer.Option(help="Write the canvas with the turtle's path to a PNG file on exit.", metavar="FILE.png"),
@@ -52,7 +53,7 @@ def sim(
     from grader.ros.installation import find_ros, users_environment, who_hears
     from grader.ros.underlay import with_turtlesim
 
-    # typer does not support options with an optional value.
+    # typer does not support options with an optional value. `App` separates --view=terminal into two words.
     where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
     refuse_unknown(context.args)
     check_writable(image)
@@ -71,12 +72,14 @@ def sim(
 
 def refuse_unknown(arguments: Sequence[str]) -> None:
     """Raise UsageError for an argument that is neither an option of the command nor for ROS 2."""
-    from grader.common.words import shorten
+    from grader.common.words import nearest, shorten
     from grader.errors import UsageError
 
     if not arguments or arguments[0] == "--ros-args":
         return
-    message = f"`grader sim` has no argument {shorten(arguments[0], 60)}. `grader sim --help` lists the options."
+    guess = nearest(arguments[0], (each for each in _WORDS if each != arguments[0]))
+    hint = f" Did you mean {guess}?" if guess else ""
+    message = f"`grader sim` has no argument {shorten(arguments[0], 60)}.{hint} `grader sim --help` lists the options."
     if arguments[0].partition("=")[0] == "--domain":
         message = "`grader sim` has no option --domain. `grader shell --domain N` opens a shell with domain N."
     raise UsageError(message)

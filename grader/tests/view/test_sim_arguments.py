@@ -15,6 +15,10 @@ from grader.view.cli import refuse_unknown
         (["--domain", "77"], "`grader shell --domain N` opens a shell with domain N."),
         (["--domain=77"], "`grader sim` has no option --domain."),
         (["--domino"], "`grader sim` has no argument --domino."),
+        (["-view"], "`grader sim` has no argument -view. Did you mean --view?"),
+        (["view"], "Did you mean --view?"),
+        (["terminl"], "Did you mean --view terminal?"),
+        (["XY"], "`grader sim` has no argument XY. `grader sim --help` lists the options."),
         (["page"], "`grader sim` has no argument page. `grader sim --help` lists the options."),
     ],
 )

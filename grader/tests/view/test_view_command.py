@@ -57,9 +57,10 @@ def test_grader_sim_shows_its_turtle_and_takes_parameters(alone: World) -> None:
     assert not any("Traceback" in line for line in simulator.lines)
 
 
-def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: World) -> None:
+@pytest.mark.parametrize("typed", ["--view terminal", "--view=terminal"])
+def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: World, typed: str) -> None:
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    done = alone.run("grader sim --view terminal", XDG_CACHE_HOME=cache)
+    done = alone.run(f"grader sim {typed}", XDG_CACHE_HOME=cache)
     assert done.code == 2
     assert "--view terminal needs a terminal" in done.stderr
 

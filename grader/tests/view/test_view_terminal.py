@@ -109,6 +109,21 @@ def test_it_ends_and_leaves_the_terminal_as_it_was(system: World, how: str) -> N
     see_it_restored(terminal, system)
 
 
+def test_two_turtlesims_with_the_same_name_are_reported_in_both_terminals(system: World) -> None:
+    terminals = []
+    for _ in range(2):
+        terminals.append(shell(system))
+        terminals[-1].sendline(OUR_TURTLESIM)
+        terminals[-1].expect("Spawning turtle")
+    for terminal in terminals:
+        terminal.expect("Another node in this ROS domain has the name /turtlesim.")
+        assert "Another" not in terminal.before
+    for terminal in terminals:
+        terminal.sendintr()
+        terminal.expect("ready")
+        terminal.close()
+
+
 @pytest.mark.parametrize("stdin", ["", "echo | "])
 def test_it_says_that_it_needs_a_terminal(system: World, stdin: str) -> None:
     done = system.run(f"{stdin}{VIEW}")
