@@ -11,11 +11,16 @@ from grader.checks.causes.why_rate import length_of, made_in_callback, named
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Call
 
 ONCE = ("__init__", "main")
 """Functions that run once."""
+_LEAVES = (ast.Return, ast.Raise, ast.Continue, ast.Break)
+_LATER = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
+"""The code inside these does not run where it is written."""
 
 
 def why_sleep_in_callback(evidence: Evidence, period_s: float) -> Cause | None:
@@ -28,15 +33,36 @@ def why_sleep_in_callback(evidence: Evidence, period_s: float) -> Cause | None:
         return None
     name, where = found
     sleeps = [
-        (call, length_of(call))
+        (call, length_of(call) or 0.0)
         for call in evidence.code.calls("sleep")
         if call.where.file == where.file and any(call.node in ast.walk(each) for each in named(call.module, name))
     ]
-    in_all_s = sum(length or 0.0 for _, length in sleeps)
-    if in_all_s < period_s and not any(length and _in_loop(call) for call, length in sleeps):
+    lengths = {id(call.node): length_s for call, length_s in sleeps}
+    callbacks = [each for call, _ in sleeps for each in named(call.module, name)]
+    longest_s = max((_longest_s(each.body, lengths) for each in callbacks), default=0.0)
+    if longest_s < period_s and not any(length_s and _in_loop(call) for call, length_s in sleeps):
         return None
     text = "While a method sleeps, a node with one thread does nothing else."
     return Cause("sleep-in-callback", text, where)
+
+
+def _longest_s(statements: Sequence[ast.AST], lengths: Mapping[int, float]) -> float:
+    """Return the time (s) for which one run of these statements can sleep. `lengths` maps the id of a call to its time.
+
+    Only one branch of an `if` runs. After a branch that ends with return, raise, continue or break, nothing else runs.
+    """
+    longest_s = 0.0
+    for node in reversed(statements):
+        if isinstance(node, ast.If):
+            taken, other = (
+                _longest_s(branch, lengths) + (0.0 if branch and isinstance(branch[-1], _LEAVES) else longest_s)
+                for branch in (node.body, node.orelse)
+            )
+            longest_s = max(taken, other)
+        else:
+            children = [] if isinstance(node, _LATER) else list(ast.iter_child_nodes(node))
+            longest_s += lengths.get(id(node), 0.0) + _longest_s(children, lengths)
+    return longest_s
 
 
 def why_rate_in_callback(evidence: Evidence) -> Cause | None:

@@ -52,6 +52,9 @@ def test_a_callback_that_sends_in_some_of_its_calls_is_told_in_how_many(timer: s
     assert ("send is called every 0.25 s, and one in 4 calls sends a command." in finding_.cause) == found
 
 
+FAR = "if self.far:\n            "
+
+
 @pytest.mark.parametrize(
     ("timer", "rest", "blamed"),
     [
@@ -63,6 +66,11 @@ def test_a_callback_that_sends_in_some_of_its_calls_is_told_in_how_many(timer: s
         ("0.5", "for _ in range(50):\n            time.sleep(self.rest)", False),
         ("0.5", "time.sleep(self.rest)", False),
         ("0.5", "time.sleep(0.3); time.sleep(0.3)", True),
+        ("0.5", f"{FAR}time.sleep(0.3)\n        else:\n            time.sleep(0.4)", False),
+        ("0.5", f"{FAR}time.sleep(0.1)\n        else:\n            time.sleep(0.5)", True),
+        ("0.5", f"{FAR}time.sleep(0.3)\n        time.sleep(0.3)", True),
+        ("0.5", f"{FAR}time.sleep(0.3)\n            return\n        time.sleep(0.4)", False),
+        ("0.5", "with self.lock:\n            time.sleep(0.3)\n        time.sleep(0.3)", True),
         ("0.5", "time.sleep(0.3); self.other()\n\n    def other(self):\n        time.sleep(0.3)", False),
     ],
 )
