@@ -16,6 +16,8 @@ from pathlib import Path
 
 from grader.common import terminal_text
 from grader.common.interpreter import interpreter
+from grader.errors import GraderError
+from grader.learner import progress
 from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
 from grader.setup.setup_errors import MACHINE_BROKEN, guarded
 
@@ -54,10 +56,18 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"  {name:<40} {seconds:6.1f} s")
     print(f"  {'in all':<40} {uptime_s() - since:6.1f} s")
     print(f"\nImage of the turtle's path: {image}")
-    print("\nNext, in this folder: source the setup file, and start the first step.\n")
-    print("    source .venv/setup.bash")
-    print("    grader start 01")
+    print(next_words())
     return 0
+
+
+def next_words() -> str:
+    """Return the next commands to print: those of a new learner, or of one who has started a step before."""
+    try:
+        begun = progress.load(progress.workspace_of(None)).current is not None
+    except (GraderError, OSError, RuntimeError):  # the next command reports it
+        begun = False
+    what, command = ("see how far you are", "grader status") if begun else ("start the first step", "grader start 01")
+    return f"\nNext, in this folder: source the setup file, and {what}.\n\n    source .venv/setup.bash\n    {command}"
 
 
 def closing_words(exit_code: int) -> str:

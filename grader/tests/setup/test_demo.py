@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.learner import progress, steps
 from grader.setup import demo
 from grader.setup.bootstrap import Stamp
 
@@ -44,3 +45,15 @@ def test_reads_the_stages_of_the_grading(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("code", "words"), [(3, "grader doctor"), (1, "not your mistake")])
 def test_a_failed_demo_says_whose_fault_it_is(code: int, words: str) -> None:
     assert words in demo.closing_words(code)
+
+
+def test_a_learner_who_has_started_a_step_is_not_sent_to_the_first_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("ROS2_WORKSPACE", str(tmp_path / "ros2_ws"))
+    assert demo.next_words().endswith("\n    grader start 01")
+    steps.start("03", None)
+    assert demo.next_words().endswith("\n    grader status")
+    progress.state_file().write_text("{")
+    assert demo.next_words().endswith("\n    grader start 01")
