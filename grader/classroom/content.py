@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
     from grader.exercise.model import Exercise
 
+_GIVE = re.compile(r"\b([Gg])ive (?=th)")
 MOST_DEEP = 4
 """answers.toml may be inside up to this many nested folders, if each of them contains nothing but the next one. Entries
 whose names begin with a dot or with `__`, such as `__MACOSX`, do not count."""
@@ -81,7 +83,7 @@ def _handed_in(
                 opened = reader.read(_open, folder, exercise)
             except UsageError as error:
                 # Students read this, so it must not contain a path of this machine.
-                reason = str(error).replace(shown(str(folder)), shown(found.name))
+                reason = _GIVE.sub(_hand_in, str(error)).replace(shown(str(folder)), shown(found.name))
                 return Refused(reason, _diagnosis(error, exercise))
     except unpack.NotUnpackedError as error:
         return Refused(f"{named} {error}.", error.diagnosis)
@@ -93,6 +95,11 @@ def _handed_in(
         detail = error.strerror if isinstance(error, OSError) else str(error)
         return Refused(f"{named} could not be read ({detail}).", "unreadable")
     return replace(opened, name=found.name, student=student)
+
+
+def _hand_in(give: re.Match[str]) -> str:
+    """Replace a request to give a path to the command: a student hands in a folder."""
+    return ("Hand" if give[1] == "G" else "hand") + " in "
 
 
 def _diagnosis(error: UsageError, exercise: Exercise) -> Diagnosis:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from grader.grading.clock import ClockChoice
 
 DASK = "dask://"
+_DASK = re.compile(rf"{DASK}\S+:\d{{1,5}}")
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ def grade_found(
 def _engine_is_known(request: Request) -> bool:
     """Return whether the engine is "local", that is, this machine. Raises UsageError for an unknown engine."""
     local = request.engine == "local"
-    if not local and not request.engine.startswith(DASK):
+    if not local and not _DASK.fullmatch(request.engine):
         message = f'--engine is "{request.engine}". The engine must be local or {DASK}HOST:PORT.'
         raise UsageError(message)
     return local

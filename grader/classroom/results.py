@@ -12,6 +12,7 @@ may use a folder.
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import json
 import os
@@ -165,8 +166,9 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             mark(lock)
         file = lock.open("a")
     except OSError as error:
-        instead = ", or choose another folder with --out" if chosen else ", or make the folder writable"
-        message = f"The results cannot be written to {folder}: {error.strerror}. Free some space{instead}."
+        todo = "Free some space" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "Make the folder writable"
+        instead = ", or choose another folder with --out" if chosen else ""
+        message = f"The results cannot be written to {folder}: {error.strerror}. {todo}{instead}."
         raise MachineError(message) from error
     with file:
         try:

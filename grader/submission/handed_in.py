@@ -69,7 +69,9 @@ def _handed_in(name: str, path: Path, exercise: Exercise, exactly: bool) -> Subm
     if found is None:
         start = _started(exercise, folder) if parts else None
         if missing is not None and start is None:
-            raise missing
+            why = remark or _why_no_cell_counts(exercise, folder)
+            message = f"{missing} {why}".rstrip()
+            raise NoPackageError(message)
         found = Submission(name, path.resolve() / folder.relative_to(root) / exercise.package, start or {}, (), "")
     if found.rejected:
         return found  # an invalid package is judged as it is
@@ -147,6 +149,17 @@ def _chosen(exercise: Exercise, folder: Path) -> tuple[list[Part], str]:
         kind = "a notebook" if len(broken) == 1 else "notebooks"
         remarks.append(f"{a_list([shown(each) for each in broken])} could not be read as {kind}.")
     return counted, " ".join(remarks)
+
+
+def _why_no_cell_counts(exercise: Exercise, folder: Path) -> str:
+    """Return why the notebooks in a folder without a package do not replace it, or "" if there is no notebook."""
+    names = [name for name, _ in _notebooks(folder)]
+    others = {name: each for name in names for each in catalogue() if each != exercise.id and name.startswith(each)}
+    own = [shown(name) for name in names if name not in others]
+    if own:
+        magics = "%%node or %%package" if exercise.package else "%%answers"
+        return f"In {a_list(own)}, no cell that begins with {magics} differs from the starting point."
+    return " ".join(f"{shown(name)} is the notebook of {each}, not of {exercise.id}." for name, each in others.items())
 
 
 def _notebooks(folder: Path) -> Iterator[tuple[str, bytes]]:

@@ -13,6 +13,7 @@ import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.submission import tree
 from grader.submission.tree import Entry, shown
@@ -20,6 +21,7 @@ from grader.submission.tree import Entry, shown
 PACKAGE_FILES = ("package.xml", "setup.py")
 IGNORE_MARKER = "COLCON_IGNORE"
 GIVE = "Give the folder of your package: the one that contains package.xml."
+_PACKED = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.xz", ".tar.bz2", ".7z", ".rar")
 MAX_FOLDERS = 5000
 MAX_NAMED = 10
 """The maximum number of files, folders or packages that an error message names."""
@@ -147,6 +149,10 @@ def _none(search: _Search, root: int, name: str) -> str:
     listing = tree.entries(root)
     if listing is None:
         return f"{none} The folder contains more than {tree.MAX_ENTRIES} files and folders. {GIVE}"
+    packed = [shown(entry.name) for entry in listing if entry.is_file and entry.name.lower().endswith(_PACKED)]
+    if packed:
+        archives = "an archive" if len(packed) == 1 else "archives"
+        return f"{none} {a_list(packed)} must be unpacked: the grader does not look into {archives}. {GIVE}"
     names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in listing]
     if not names:
         return f"{none} The folder is empty. Give the folder of your package."
@@ -163,7 +169,7 @@ def _for_a_file(name: str) -> str:
     for above in (folder, *list(folder.parents)[:2]):
         if any((above / file).is_file() for file in PACKAGE_FILES):
             return f"The grader grades whole packages. Give the folder of the package: {shown(str(above))}."
-    if name.lower().endswith((".zip", ".tar", ".tar.gz", ".tgz")):
+    if name.lower().endswith(_PACKED):
         return "Unpack the archive, and give the folder of the package."
     if name.endswith(".py"):
         return "The grader grades whole packages. Give the folder that contains package.xml."

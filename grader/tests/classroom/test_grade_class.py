@@ -120,6 +120,8 @@ def test_fail_under_is_the_exit_code(undisturbed: Run, tmp_path: Path, under: st
         (["{class}/gina/notes.txt", "--exercise", STEP], "neither a folder nor an archive"),
         (["{class}/gina", "--exercise", STEP], "No submission was found"),
         (["{class}", "--exercise", STEP, "--engine", "cloud"], "The engine must be local or dask://HOST:PORT"),
+        (["{class}", "--exercise", STEP, "--engine", "dask://host"], "The engine must be local or dask://HOST:PORT"),
+        (["{class}", "--exercise", STEP, "--engine", "dask://:8786"], "The engine must be local or dask://HOST:PORT"),
         (["{class}", "--exercise", STEP, "--checks", "{class}"], "There are no checks in"),
         (["{class}", "--exercise", STEP, "--roster", "{class}/hans.zip"], "is not a roster"),
         (["{class}", "--exercise", STEP, "--out", "{class}"], "contains files that are not results"),

@@ -64,6 +64,20 @@ def test_the_archive_in_a_folder_is_named(tmp_path: Path) -> None:
     assert refused.reason.startswith("ben/work.zip is not a .zip or .tar.gz")
 
 
+@pytest.mark.parametrize(
+    ("make", "todo"),
+    [(empty, "Hand in the folder of your package."), (two_packages, "Hand in the package to grade, for example ")],
+)
+def test_a_student_is_told_what_to_hand_in(tmp_path: Path, make: Callable[[Path], None], todo: str) -> None:
+    make(tmp_path)
+    (refused,) = (
+        read(each, find_exercise(STEP), "ben") for each in find_submissions([tmp_path], STEP, tmp_path / "out")
+    )
+    assert isinstance(refused, Refused)
+    assert todo in refused.reason
+    assert "Give" not in refused.reason
+
+
 def no_archive(folder: Path) -> None:
     (folder / "ben.zip").write_bytes(b"PK\x03\x04 and no more")
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import errno
-from typing import TYPE_CHECKING
+import os
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -13,9 +14,6 @@ from grader.classroom.key import Key, changed, grader_key
 from grader.classroom.results import Results, file_name, opened
 from grader.errors import MachineError, UsageError
 from grader.tests.report.reports import report
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 KEY = Key("submission", "anna", "exercise", "grader", "ros", "options")
 
@@ -101,6 +99,20 @@ def test_a_full_disk_leaves_the_old_result(tmp_path: Path, monkeypatch: pytest.M
             results.save("anna", report("passed"), KEY, b"<p>new")
         assert results.load("anna", saved.report.exercise) == saved
         assert not list((tmp_path / "grades").rglob("*.partial"))
+
+
+@pytest.mark.parametrize(
+    ("number", "todo"), [(errno.ENOSPC, "Free some space"), (errno.EROFS, "Make the folder writable")]
+)
+def test_what_to_do_depends_on_why_the_folder_cannot_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, todo: str
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(Path, "mkdir", fails)
+    with pytest.raises(MachineError, match=rf"{os.strerror(number)}\. {todo}, or choose"), opened(tmp_path / "out"):
+        pass
 
 
 def test_a_folder_with_other_files_is_not_touched(tmp_path: Path) -> None:

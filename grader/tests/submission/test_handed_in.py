@@ -74,8 +74,26 @@ def test_a_notebook_alone_is_completed_with_the_starting_point(tmp_path: Path) -
 
 def test_an_unchanged_notebook_is_not_a_package(tmp_path: Path) -> None:
     submitted = handed_in(tmp_path / "in", start(NODE), {})
-    with pytest.raises(UsageError, match="There is no package"):
-        open_handed_in(submitted, CIRCLE)
+    assert "no cell that begins with %%node or %%package differs from the starting point" in why_no_package(submitted)
+
+
+def why_no_package(folder: Path) -> str:
+    with pytest.raises(UsageError, match="There is no package") as error:
+        open_handed_in(folder, CIRCLE)
+    return str(error.value)
+
+
+def test_why_a_notebook_does_not_replace_the_package_is_told(tmp_path: Path) -> None:
+    other = handed_in(tmp_path / "other", "mine", {}, "06-pose-subscriber.ipynb")
+    assert f"06-pose-subscriber.ipynb is the notebook of 06-pose-subscriber, not of {CIRCLE.id}." in why_no_package(
+        other
+    )
+    broken = handed_in(tmp_path / "broken", "mine", {})
+    (broken / f"{CIRCLE.id}.ipynb").write_text("{")
+    assert f"{CIRCLE.id}.ipynb could not be read as a notebook." in why_no_package(broken)
+    several = handed_in(tmp_path / "several", "one", {}, "a.ipynb")
+    handed_in(several, "two", {}, "b.ipynb")
+    assert "The cells of a.ipynb and b.ipynb were not used" in why_no_package(several)
 
 
 def test_the_cells_of_a_notebook_in_an_archive_count(tmp_path: Path) -> None:

@@ -102,6 +102,18 @@ def test_no_package_says_what_is_there(tmp_path: Path) -> None:
     assert "The folder contains draw_circle.py, notes/." in message
 
 
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (["a.zip"], "a.zip must be unpacked: the grader does not look into an archive."),
+        (["a.ZIP", "b.rar", "c.py"], "a.ZIP and b.rar must be unpacked: the grader does not look into archives."),
+    ],
+)
+def test_archives_beside_other_files_are_to_be_unpacked(tmp_path: Path, names: list[str], said: str) -> None:
+    make(tmp_path, dict.fromkeys(names, ""))
+    assert said in refused(tmp_path)
+
+
 def test_a_folder_with_too_many_entries_is_not_called_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tree, "MAX_ENTRIES", 2)
     make(tmp_path, dict.fromkeys("abc", ""))
