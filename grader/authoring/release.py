@@ -57,7 +57,8 @@ def released(solution: Path) -> dict[str, ReleasedFile]:
     """
     files: dict[str, ReleasedFile] = {}
     found = _read(solution)
-    for path in sorted(found.files, key=tree.sort_key):
+    # Notebooks come last: `grader release` copies mistakes in the other files into their cells.
+    for path in sorted(found.files, key=lambda each: (each.endswith(".ipynb"), tree.sort_key(each))):
         data = release_file(found.files[path], path, f"{solution}/{path}")
         if data is not None:
             files[path] = ReleasedFile(data, path in found.executable)
@@ -155,20 +156,31 @@ def release_file(data: bytes, path: str, name: str) -> bytes | None:
         return data
     if not result.strip():
         return None
-    _must_parse(result, path, name)
+    _must_parse(result, text, path, name)
     return result.encode()
 
 
-def _must_parse(text: str, path: str, name: str) -> None:
-    parsers: dict[str, Callable[[str], object]] = {".py": ast.parse, ".xml": ET.fromstring, ".toml": tomllib.loads}
-    parse = parsers.get(Path(path).suffix)
-    if parse is None:
+def _must_parse(result: str, text: str, path: str, name: str) -> None:
+    """Raise UsageError if the released file cannot be parsed. `text` is the file before it was released."""
+    fault = _fault(result, path)
+    if not fault:
         return
+    own = _fault(text, path)
+    message = f"{name}: the file cannot be parsed: {own}."
+    if not own:
+        message = f"{name}: the released file cannot be parsed: {fault}. Add a STARTER block below the region."
+    raise UsageError(message)
+
+
+def _fault(text: str, path: str) -> str:
+    """Return why a Python, XML or TOML file with this text cannot be parsed, or an empty string."""
+    parsers: dict[str, Callable[[str], object]] = {".py": ast.parse, ".xml": ET.fromstring, ".toml": tomllib.loads}
+    parse = parsers.get(Path(path).suffix, str)
     try:
         parse(text)
     except (SyntaxError, ET.ParseError, tomllib.TOMLDecodeError) as error:
-        message = f"{name}: the released file cannot be parsed: {error}. Add a STARTER block below the region."
-        raise UsageError(message) from error
+        return str(error).replace("<unknown>, ", "")
+    return ""
 
 
 def _read(folder: Path) -> tree.Tree:

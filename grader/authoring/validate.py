@@ -96,6 +96,11 @@ class _Validation:
         if self._unreadable:
             yield self._unreadable
             return
+        if self._exercise.id != self._name:
+            yield (
+                f'{self._file}: [exercise]: "id" is "{self._exercise.id}"; it must be "{self._name}", the name of the '
+                "folder."
+            )
         if not self._exercise.hints:
             yield f"{self._file}: the file has no [[hint]]. Learners need hints."
         elif all(hint.checks for hint in self._exercise.hints):
@@ -158,7 +163,12 @@ def lesson_problems(file: Path, app: typer.Typer) -> Iterator[str]:
     if not file.is_file():
         yield f"{file} is missing: every step has a lesson."
         return
-    text = file.read_text(encoding="utf-8")
+    try:
+        text = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        yield f"{file}, line {line}: this is not UTF-8. Save the file as UTF-8."
+        return
     words = len(_CODE.sub("", text).split())
     low, high = LESSON_WORDS
     if not low <= words <= high:

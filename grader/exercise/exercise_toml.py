@@ -106,6 +106,9 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     checks = _checks(top, tuple(trial.id for trial in trials), kinds, numbers)
     for problem in (*unknown_calls(trials, checks), *unknown_numbers(trials, numbers)):
         top.problem(problem)
+    unsolved = head.strings("starting_point_fails")
+    for name in unsolved:
+        _must_be_check(head, "starting_point_fails", name, [check.id for check in checks])
     exercise = Exercise(
         id=id_,
         title=head.string("title"),
@@ -114,7 +117,7 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
         checks=checks,
         hints=tuple(_hint(table, checks) for table in top.tables("hint")),
         show_fix=head.flag("show_fix"),
-        unsolved=head.strings("starting_point_fails"),
+        unsolved=unsolved,
         apart=head.flag("apart"),
         numbers=numbers,
         folder=folder,

@@ -77,6 +77,21 @@ def test_released_files_must_parse(root: Path, path: str, text: str) -> None:
         released(root / "solutions" / "01-x")
 
 
+def test_a_solution_that_cannot_be_parsed_needs_no_starter_block(root: Path) -> None:
+    step = root / "solutions" / "01-x"
+    (step / "pkg" / "node.py").write_text(f"{MARKED}def main((:\n    pass\n")
+    with pytest.raises(UsageError, match=r"node\.py: the file cannot be parsed: [^<]*\(line \d+\)\.$"):
+        released(step)
+
+
+def test_a_mistake_is_reported_in_the_file_and_not_in_the_copy_in_a_notebook(root: Path) -> None:
+    step = root / "solutions" / "01-x"
+    (step / "01-x.ipynb").write_text("{")
+    (step / "pkg" / "node.py").write_text("# END SOLUTION\n")
+    with pytest.raises(UsageError, match=r"node\.py:1: END SOLUTION without a BEGIN SOLUTION"):
+        released(step)
+
+
 def test_a_marker_in_an_unknown_type_of_file_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "a.cpp").write_text("// BEGIN SOLUTION\n")
     with pytest.raises(UsageError, match=r"a\.cpp: a file of an unknown type contains a marker"):

@@ -116,6 +116,12 @@ def test_a_wrong_command_in_a_lesson_is_a_problem(root: Path) -> None:
     assert problems(root) == [reported]
 
 
+def test_the_id_must_be_the_name_of_the_folder(root: Path) -> None:
+    file = root / "course" / NEW / "exercise.toml"
+    change(file, f'id = "{NEW}"', 'id = "14-straight"')
+    assert f'{file}: [exercise]: "id" is "14-straight"; it must be "{NEW}", the name of the folder.' in problems(root)
+
+
 def wrong_solution(root: Path) -> None:
     change(root / "solutions" / NEW / "my_robot_controller" / NODE, "0.5", "0.6")
 
@@ -168,6 +174,12 @@ def test_a_lesson_of_one_word_has_1_word(tmp_path: Path) -> None:
     (tmp_path / "lesson.md").write_text("Short.\n")
     (problem,) = lesson_problems(tmp_path / "lesson.md", app)
     assert "has 1 word (without code)" in problem
+
+
+def test_a_lesson_that_is_not_utf8_is_a_problem(tmp_path: Path) -> None:
+    (tmp_path / "lesson.md").write_bytes(b"# A\n\ncaf\xe9\n")
+    (problem,) = lesson_problems(tmp_path / "lesson.md", app)
+    assert problem == f"{tmp_path}/lesson.md, line 3: this is not UTF-8. Save the file as UTF-8."
 
 
 def test_all_missing_things_are_reported_together(root: Path) -> None:

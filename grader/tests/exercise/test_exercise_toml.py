@@ -202,6 +202,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             'needs = "rate"',
             '[[check]] 2 (values): "needs" is "rate"; it must be a list of strings.',
         ),
+        ("[[trial]]", 'starting_point_fails = ["rat"]\n[[trial]]', '[exercise]: "starting_point_fails" contains "rat"'),
         ('needs = ["rate"]', 'needs = ["values"]', '"needs" has a cycle: values -> values. Remove one of these needs.'),
         (
             'id = "values"',
