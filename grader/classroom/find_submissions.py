@@ -56,8 +56,28 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
             "folder or archive (.zip, .tar.gz) per student."
         )
         raise UsageError(message)
+    _require_class(given, found, wanted)
     submissions = without_duplicates(_of_known_exercises(found))
     return tuple(sorted(submissions, key=lambda each: (sort_key(each.student), each.exercise)))
+
+
+def _require_class(given: Sequence[Path], found: Sequence[Found], wanted: str | None) -> None:
+    """Raise UsageError if several of the given folders are those of students, as in `grader grade submitted/*`.
+
+    A student's folder contains only folders with the names of the package or of exercises. If these were the names of
+    students, several students would have the same name, and none of their submissions would be graded.
+    """
+    names = {*catalogue(), find_exercise(wanted).package if wanted else UNKNOWN}
+    inside = [[each.path for each in found if each.path.parent == Path(os.path.realpath(path))] for path in given]
+    ours = [each[0] for each in inside if each and all(path.name in names and os.path.isdir(path) for path in each)]
+    if len(set(ours)) > 1:
+        folders = a_list([shown(f"{each.parent.name}/{each.name}") for each in ours], most=3)
+        parents = sorted({str(each.parent.parent) for each in ours})
+        message = (
+            f"{folders} have the name of the package or of an exercise, and not of a student. Give the folder that "
+            f"contains the folders of the students: {shown(parents[0])}"
+        )
+        raise UsageError(message)
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:

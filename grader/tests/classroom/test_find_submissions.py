@@ -122,6 +122,19 @@ def test_a_link_to_the_exercise_of_another_student_is_not_followed(tmp_path: Pat
     assert isinstance(read(found, find_exercise(STEP), "ben"), Refused)
 
 
+@pytest.mark.parametrize("inside", [["my_robot_controller"], [STEP], ["01-first-node", STEP]])
+def test_the_folders_of_students_are_not_classes(tmp_path: Path, inside: list[str]) -> None:
+    """As with `grader grade submitted/*`."""
+    students = [tmp_path / name for name in ("anna", "ben")]
+    for student in students:
+        for name in inside:
+            (student / name).mkdir(parents=True)
+    with pytest.raises(UsageError, match=f"contains the folders of the students: {tmp_path}$"):
+        find_submissions(students, STEP, tmp_path / "grades")
+    (tmp_path / "ben" / "clara").mkdir()
+    assert len(find_submissions(students, STEP, tmp_path / "grades")) > 1
+
+
 def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> None:
     (tmp_path / "anna").mkdir()
     (tmp_path / "anna.zip").touch()
