@@ -22,7 +22,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     """Configure nbgrader for the course in `root`, the folder that contains solutions/ and exercises/."""
     from nbgrader import preprocessors as steps
 
-    from grader.gradebook import converters
+    from grader.gradebook import converters, formgrader_times
     from grader.gradebook.confined_autograde import CHECK_S, ConfinedExecute
     from grader.gradebook.exchange import BoundedList, BoundedReleaseFeedback
     from grader.gradebook.export import ConfirmedCsv
@@ -35,6 +35,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     _see_own_commands()
     _log_no_control_characters()
     converters.install()
+    formgrader_times.install()
     folders = config.CourseDirectory
     folders.root = str(root)
     folders.course_id = _course_id(root / CLASS / ID)
