@@ -21,6 +21,7 @@ from grader.common.needed_command import needed_command
 from grader.common.own_process import prepare
 from grader.common.standard_streams import make_usable
 from grader.common.terminal_text import say
+from grader.errors import MachineError
 from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
@@ -148,10 +149,18 @@ def check(
             )
     from grader.learner import steps
 
-    following = steps.note(requested, opened.package_dir, graded.report)
+    following, unsaved = "", None
+    try:
+        following = steps.note(requested, opened.package_dir, graded.report)
+    except MachineError as error:  # the verdict comes first
+        unsaved = error
     if following and image is None:
         following = "\n".join(filter(None, [steps.keep_picture(graded.evidence, graded.report), following]))
-    _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following, changes=explain)
+    try:
+        _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following, changes=explain)
+    finally:
+        if unsaved is not None:
+            raise unsaved
 
 
 @app.command(rich_help_panel=TEACH, epilog="Example: grader regrade my-recording --image path.png")

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.outcome import Status
 from grader.common import xdg
+from grader.common.roots_files import belongs_to_root
 from grader.common.system_errors import of_the_machine, refusal
 from grader.errors import MachineError
 
@@ -128,7 +129,9 @@ def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
             fresh.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
             fresh.replace(file)
     except OSError as error:
-        more = refusal(error) if of_the_machine(error) else "Choose another folder with XDG_STATE_HOME."
+        more = (refusal(error) if of_the_machine(error) else belongs_to_root(Path(error.filename or file))) or (
+            "Choose a folder that you can write to: export XDG_STATE_HOME=FOLDER"
+        )
         message = f"Your progress could not be written to {file} ({error.strerror}). {more}"
         raise MachineError(message) from error
     return changed

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.roots_files import belongs_to_root
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import draw_numbers, to_toml
@@ -100,7 +101,8 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     except (FileExistsError, NotADirectoryError) as error:
         raise UsageError(_in_the_way(Path(error.filename))) from error
     except OSError as error:
-        message = f"{error.filename or folder} could not be read or written: {error.strerror}."
+        more = belongs_to_root(Path(error.filename or folder))
+        message = f"{error.filename or folder} could not be read or written: {error.strerror}. {more}".rstrip()
         raise MachineError(message) from error
     return Started(folder, added, present, kept, lacking, tasks, earlier)
 
