@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from nbformat.v4 import new_code_cell, new_markdown_cell
 from nbgrader.api import Gradebook
 from nbgrader.preprocessors import NbGraderPreprocessor
+from nbgrader.utils import compute_checksum
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -57,6 +58,12 @@ class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
             *(cell for cell in missing if cell.metadata.nbgrader.grade),
         ]
         return nb, resources
+
+
+def checksum(cell: Any, points: float, *, solution: bool) -> str:  # noqa: ANN401 - nbgrader's SourceCell
+    """Return the checksum of an instructor's cell that is worth these points."""
+    found: str = compute_checksum(_cell(_metadata(cell, points, solution=solution), cell.source))
+    return found
 
 
 def _name(cell: NotebookNode) -> str | None:

@@ -8,6 +8,7 @@ nbgrader's gradebook through its API. A check that the grader cannot judge is wo
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -230,7 +231,7 @@ def _write(
         name = f"{step} {outcome.id}"
         if grade.cell.max_score != outcome.max:
             maxima[name] = f"{grade.cell.max_score:g} to {outcome.max:g}"
-            grade.cell.max_score = outcome.max
+            _change_maximum(gradebook, grade.cell, outcome.max)
         changed = grade.auto_score != outcome.points
         tally["changed"] += changed
         grade.auto_score = outcome.points  # 0 if the check could not be judged
@@ -243,6 +244,20 @@ def _write(
     gradebook.db.commit()
     _late(folders, student, step)
     return without_cell
+
+
+def _change_maximum(gradebook: Any, cell: Any, points: float) -> None:  # noqa: ANN401 - nbgrader has no types
+    """Change the maximum of a graded cell, and its checksum: `nbgrader autograde` refuses a cell with another one."""
+    from nbgrader.api import MissingEntry
+
+    from grader.gradebook.restore import checksum
+
+    cell.max_score = points
+    step = cell.notebook.assignment.name
+    with suppress(MissingEntry):
+        source = gradebook.find_source_cell(cell.name, cell.notebook.name, step)
+        solution = any(each.name == cell.name for each in cell.notebook.solution_cells)
+        source.checksum = checksum(source, points, solution=solution)
 
 
 def _time_of(folder: Path) -> datetime | None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 from typing import TYPE_CHECKING
 
+import nbformat
 import pytest
+from nbgrader.preprocessors import OverwriteCells
 
 from grader.sandbox import bubblewrap
 from grader.tests.gradebook.term import STEP, Term, solve, too_slow
@@ -38,9 +40,22 @@ def test_no_score_is_above_its_maximum(tmp_path: Path) -> None:
         assert gradebook.find_grade("rate", STEP, STEP, "bert").needs_manual_grade
         assert gradebook.find_grade("rate", STEP, STEP, "anna").max_score == 40
 
+    assert points_of_a_new_notebook(term)["rate"] == 40
+
     # Without the private checks, the points of the course count again.
     assert "rate (40 to 20)" in term.run("grader", "gradebook", "sync")
     assert table(term)["anna"] == (100, 100)
+    assert points_of_a_new_notebook(term)["rate"] == 20
+
+
+def points_of_a_new_notebook(term: Term) -> dict[str, float]:
+    """Map each cell to its points in a notebook that `nbgrader autograde` prepares for its kernel."""
+    notebook = nbformat.read(term.root / "exercises" / STEP / f"{STEP}.ipynb", as_version=4)  # type: ignore[no-untyped-call]
+    database = f"sqlite:///{term.root}/class/gradebook.db"
+    about = {"nbgrader": {"notebook": STEP, "assignment": STEP, "student": "clara", "db_url": database}}
+    prepared, _ = OverwriteCells().preprocess(notebook, about)
+    cells = [cell.metadata.nbgrader for cell in prepared.cells if "points" in cell.metadata.get("nbgrader", {})]
+    return {cell.grade_id: cell.points for cell in cells}
 
 
 def table(term: Term) -> dict[str, tuple[float, float]]:
