@@ -41,6 +41,11 @@ IGNORED = (
     "colcon ignores a folder that contains a file named COLCON_IGNORE, AMENT_IGNORE or CATKIN_IGNORE. "
     "Delete the file, so that colcon finds the package."
 )
+BY_SETUP_PY = "colcon builds an ament_python package by running its setup.py."
+FOR_CPP = (
+    "The package has a CMakeLists.txt, which colcon uses to build packages in C++. A package in Python needs a "
+    "setup.py: `ros2 pkg create --build-type ament_python` creates a package with one."
+)
 EXPECTED = "`colcon build` succeeds and installs the package."
 OTHER_TYPE = (
     "The build type in package.xml determines how colcon builds the package. This build type is not ament_python."
@@ -94,7 +99,7 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
         return failed(observed, EXPECTED, Cause("colcon-ignore", IGNORED, Where(ignored)))
     setup = evidence.setup_py
     if setup is None:
-        cause = "colcon builds an ament_python package by running its setup.py."
+        cause = FOR_CPP if "CMakeLists.txt" in evidence.submission.files else BY_SETUP_PY
         where = Where("package.xml") if "package.xml" in evidence.submission.files else None
         return failed("There is no setup.py next to package.xml.", EXPECTED, Cause("setup-py-missing", cause, where))
     if setup.unreadable is None:

@@ -211,6 +211,12 @@ NO_MARKERS = replace(BUILD, installed=tuple(path for path in BUILD.installed if 
             ({"setup.py": None}, EMPTY),
             ({}, EMPTY),
         ),
+        (
+            "The package has a CMakeLists.txt, which colcon uses to build packages in C++.",
+            "build",
+            ({"setup.py": None, "CMakeLists.txt": "ament_package()\n"}, EMPTY),
+            ({"setup.py": None, "src/CMakeLists.txt": ""}, EMPTY),
+        ),
         ("`colcon build` was still running after 60 s.", "build", ({}, SLOW), ({}, BROKEN)),
         ("setup.py must not sleep, ask for input or loop.", "build", ({}, SLOW), ({}, LIMITED)),
         ("ROS 2 finds the installed package.", "installed", ({}, BUILD), ({}, NO_MARKERS)),
