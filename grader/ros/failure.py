@@ -33,7 +33,10 @@ def did_you_mean(name: str, candidates: Iterable[str], text: str = "", nodes: It
     hint = f"Did you mean '{printable(found)}'?" if found else ""
     if all(node.rpartition("/")[2].startswith("_") for node in nodes):
         domain = os.environ.get("ROS_DOMAIN_ID") or "0"
-        hint = f"No node was found in ROS domain {domain}. Start one in another terminal, for example: grader sim"
+        from grader.ros.stopped import stopped_sentence
+
+        start = stopped_sentence() or "Start one in another terminal, for example: grader sim"
+        hint = f"No node was found in ROS domain {domain}. {start}"
     return "\n".join(part for part in (text, hint) if part)
 
 
