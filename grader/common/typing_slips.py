@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 DASHES = "-‐‑‒–—―−﹣－"
 _WITH_DASH = re.compile(f"[{re.escape(DASHES)}]+[A-Za-z][\\w-]*(=\\S*)?")
+_MOST_PARTS = 12
+"""The maximum number of words that are joined to one path."""
 _OPENING = "“„”‘‚’«»"
 _CLOSING = "”“’‘»«"
 
@@ -90,7 +92,7 @@ def _option(word: str, options: Collection[str]) -> str:
     if not _has_typographic_dash(word):
         return ""
     option = _with_minus_signs(word)
-    return option if option.partition("=")[0] in options and not Path(word).exists() else ""
+    return option if option.partition("=")[0] in options and not _exists(word) else ""
 
 
 def _has_typographic_dash(word: str) -> bool:
@@ -106,22 +108,30 @@ def _with_minus_signs(word: str) -> str:
 def _without_quotes(words: Sequence[str]) -> list[str]:
     """Return the words with the typographic quotation marks removed. The words between two of them become one."""
     for first, opening in enumerate(words):
-        if not opening or opening[0] not in _OPENING or Path(opening).exists():
+        if not opening or opening[0] not in _OPENING or _exists(opening):
             continue
         for last in range(first, len(words)):
             whole = " ".join(words[first : last + 1])
             if len(whole) > 2 and whole[-1] in _CLOSING:
                 # The shell does not replace ~ after such a quotation mark, or between the quotation marks of a shell.
-                inner = str(Path(whole[1:-1]).expanduser())
+                inner = os.path.expanduser(whole[1:-1])  # noqa: PTH111 - Path.expanduser can raise RuntimeError
                 return [*words[:first], inner, *_without_quotes(words[last + 1 :])]
     return list(words)
 
 
 def _joined(words: Sequence[str]) -> list[str]:
     """Return the words, with the words of a path that exists if they are joined by spaces as one word."""
+    there = [_exists(word) for word in words]
+    if all(there):  # such as the many paths of submissions/*
+        return list(words)
     for first in range(len(words)):
-        for last in range(len(words), first + 1, -1):
-            parts = words[first:last]
-            if not all(Path(part).exists() for part in parts) and Path(" ".join(parts)).exists():
-                return [*words[:first], " ".join(parts), *words[last:]]
+        for last in range(min(len(words), first + _MOST_PARTS), first + 1, -1):
+            whole = " ".join(words[first:last])
+            if not all(there[first:last]) and _exists(whole):
+                return [*words[:first], whole, *words[last:]]
     return list(words)
+
+
+def _exists(path: str) -> bool:
+    # In contrast to Path.exists, this function raises no error if the path is too long.
+    return os.path.exists(path)  # noqa: PTH110

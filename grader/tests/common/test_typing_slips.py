@@ -11,6 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from grader.cli import app
+from grader.common import typing_slips
 from grader.common.typing_slips import hint, slip
 from grader.errors import UsageError
 
@@ -68,6 +69,7 @@ def test_a_folder_whose_name_begins_with_a_dash_is_a_folder(folder: Path) -> Non
         ("„Mein Kürs“ --exercise ‚03‘", ["Mein Kürs", "--exercise", "03"]),
         ("”my ws/src”", ["my ws/src"]),
         ("“~/my ws”", ["{home}/my ws"]),
+        ("“~nobody-of-this-name/my ws”", ["~nobody-of-this-name/my ws"]),
     ],
 )
 def test_typographic_quotation_marks_name_the_line_with_straight_ones(
@@ -79,7 +81,7 @@ def test_typographic_quotation_marks_name_the_line_with_straight_ones(
     assert shlex.split(line) == ["grader", "check", *(word.format(home=folder) for word in right)]
 
 
-@pytest.mark.parametrize("typed", ["it’s", "“mine", "mine”", "”", "“”"])
+@pytest.mark.parametrize("typed", ["it’s", "“mine", "mine”", "”", "“”", ""])
 def test_a_single_quotation_mark_may_belong_to_a_name(typed: str) -> None:
     assert slip("grader check", [typed], []) == ""
 
@@ -97,6 +99,21 @@ def test_two_paths_that_both_exist_are_two_paths(folder: Path) -> None:
     for name in ("a", "b", "a b"):
         (folder / name).mkdir()
     assert slip("grader grade", ["a", "b"], []) == ""
+
+
+def test_many_paths_and_long_ones_take_no_time(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def ask(path: str) -> bool:
+        asked.append(path)
+        return False
+
+    monkeypatch.setattr(typing_slips, "_exists", ask)
+    assert slip("grader grade", [f"student-{number}" for number in range(2000)], []) == ""
+    assert len(asked) < 30_000
+    monkeypatch.undo()
+    monkeypatch.chdir(folder)
+    assert slip("grader grade", ["x" * 5000, "y" * 5000], []) == ""
 
 
 def test_a_word_too_many_names_the_words_that_the_command_takes() -> None:
