@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 from grader.checks.exercises import find_exercise
 from grader.classroom import archives
 from grader.classroom.duplicates import without_duplicates
-from grader.classroom.found import UNKNOWN, Found
+from grader.classroom.found import UNKNOWN, Found, what_to_do_with
 from grader.classroom.refused import Refused
 from grader.common.words import a_list
 from grader.errors import UsageError
@@ -53,7 +53,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     if not found:
         message = (
             f"No submission was found in {a_list([shown(str(path)) for path in given])}. Give the folder with one "
-            "folder or archive (.zip, .tar.gz) per student."
+            f"folder or archive (.zip, .tar.gz) per student.{what_to_do_with(passed_over(given, leave_out))}"
         )
         raise UsageError(message)
     _require_class(given, found, wanted)

@@ -11,6 +11,7 @@ from grader.checks.outcome import Status
 from grader.classroom import result_files, results
 from grader.classroom.class_run import run
 from grader.classroom.find_submissions import find_submissions, passed_over
+from grader.classroom.found import what_to_do_with
 from grader.classroom.order import Order, sort_out, sources_for
 from grader.classroom.progress_display import screen, summary
 from grader.classroom.roster import read_owners
@@ -91,7 +92,8 @@ def grade_found(
         kept, todo = sort_out(order, folder)
         say(_reported(kept, todo))
         if beside:
-            say(f"Ignored: {a_list(beside)} {'is not a submission' if len(beside) == 1 else 'are not submissions'}.")
+            what = "is not a submission" if len(beside) == 1 else "are not submissions"
+            say(f"Ignored: {a_list(beside)} {what}.{what_to_do_with(beside)}")
         for remark in owners.remarks(each.student for each in found) if owners else ():
             say(remark)
         graded: list[Result] = []

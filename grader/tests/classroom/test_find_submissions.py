@@ -10,7 +10,7 @@ import pytest
 from grader.checks.exercises import find_exercise
 from grader.classroom.content import fingerprint, read
 from grader.classroom.find_submissions import find_submissions, left_out, passed_over
-from grader.classroom.found import Found
+from grader.classroom.found import Found, what_to_do_with
 from grader.classroom.refused import Refused
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
@@ -40,6 +40,16 @@ def test_a_folder_of_folders_and_archives(tmp_path: Path) -> None:
         ("ben", STEP, "ben.zip"),
         ("clara", STEP, "clara.tar.gz"),
     ]
+
+
+def test_loose_notebooks_are_to_be_put_into_folders(tmp_path: Path) -> None:
+    """As in the downloads of some LMS."""
+    for name in ("anna_1.ipynb", "ben_2.ipynb", "grades.csv"):
+        (tmp_path / name).touch()
+    todo = r"To grade anna_1\.ipynb and ben_2\.ipynb, put each of them into a folder with the name of the student\.$"
+    with pytest.raises(UsageError, match=f"No submission was found in .* {todo}"):
+        names(tmp_path)
+    assert what_to_do_with(["grades.csv"]) == ""
 
 
 def test_nbgraders_tree(tmp_path: Path) -> None:
