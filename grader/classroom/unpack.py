@@ -9,11 +9,12 @@ from __future__ import annotations
 import gzip
 import io
 import os
+import posixpath
 import stat
 import tarfile
 import zipfile
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING, ClassVar
 
@@ -21,7 +22,7 @@ from grader.errors import UnreadableError
 from grader.submission import tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from grader.checks.diagnosis import Diagnosis
 
@@ -31,6 +32,8 @@ MOST_BYTES = 96 * 1024 * 1024
 """The maximum unpacked size (bytes): 1.5 times the size limit of a package, so that build/ and install/ fit too."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
+MOST_LINKS = 8
+"""The maximum number of links that are followed to find a file."""
 MOST_PATH_BYTES = 1000
 CHUNK = 256 * 1024
 
@@ -156,14 +159,44 @@ def not_opened(error: Exception, name: str) -> NotUnpackedError:
 
 def _members(file: IO[bytes]) -> Iterator[Member]:
     left = MOST_BYTES
+    files: dict[tuple[str, ...], Member] = {}
+    links: dict[tuple[str, ...], str] = {}
     for number, (name, mode, content) in enumerate(_zip(file) if zipfile.is_zipfile(file) else _tar(file), 1):
         if number > MOST_ENTRIES:
             message = f"contains more than {MOST_ENTRIES} entries"
             raise LargeArchiveError(message)
         parts = _parts(name)
+        links.pop(parts, None)
+        if isinstance(content, str):
+            links[parts] = content
+            continue
         data = None if content is None else _content(content, left)
         left -= len(data or b"")
-        yield Member(parts, data, executable=bool(mode & stat.S_IXUSR))
+        member = Member(parts, data, executable=bool(mode & stat.S_IXUSR))
+        if data is not None:
+            files[parts] = member
+        yield member
+    # In a folder, a link to a file of the same package counts as this file.
+    for parts, target in links.items():
+        found = _behind(target, files, links)
+        if found is None:
+            continue
+        left -= len(found.content or b"")
+        if left < 0:
+            raise LargeArchiveError(_too_much())
+        yield replace(found, parts=parts)
+
+
+def _behind(
+    target: str, files: Mapping[tuple[str, ...], Member], links: Mapping[tuple[str, ...], str]
+) -> Member | None:
+    """Return the file in the archive that a link leads to, perhaps through other links, or None."""
+    for _ in range(MOST_LINKS):
+        parts = PurePosixPath(posixpath.normpath(target)).parts
+        if parts not in links:
+            return files.get(parts)
+        target = links[parts]
+    return None
 
 
 def _content(content: IO[bytes], most: int) -> bytes:
@@ -175,10 +208,10 @@ def _content(content: IO[bytes], most: int) -> bytes:
     return bytes(data)
 
 
-def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """Yield the name, mode and content of each file and folder.
+def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | str | None]]:
+    """Yield the name, mode and content of each file, folder and link.
 
-    For a folder, the content is None. Links and devices are skipped.
+    For a folder, the content is None. For a link, it is the path of the target in the archive. Devices are skipped.
     """
     with zipfile.ZipFile(file) as packed:
         for info in packed.infolist():
@@ -187,15 +220,23 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
             name = info.filename.replace("\\", "/")
             if name.endswith("/"):
                 yield name, mode, None
-            elif stat.S_IFMT(mode) in (0, stat.S_IFREG):
+            elif stat.S_IFMT(mode) in (0, stat.S_IFREG, stat.S_IFLNK):
                 if info.flag_bits & 1:
                     message = "is protected with a password"
                     raise ArchiveFormatError(message)
                 with packed.open(info) as content:
-                    yield name, mode, content
+                    if stat.S_ISLNK(mode):
+                        yield name, mode, _beside(name, os.fsdecode(content.read(MOST_PATH_BYTES)))
+                    else:
+                        yield name, mode, content
 
 
-def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
+def _beside(name: str, target: str) -> str:
+    """Return the path in the archive to which a symbolic link leads."""
+    return posixpath.join(posixpath.dirname(name), target)
+
+
+def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | str | None]]:
     """Yield the same values as `_zip`, but for a tar archive, with or without compression by gzip."""
     file.seek(0)
     gzipped = file.read(2) == b"\x1f\x8b"
@@ -209,6 +250,10 @@ def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
                 yield info.name, info.mode, None
             elif info.isreg():
                 yield info.name, info.mode, packed.extractfile(info)
+            elif info.issym():
+                yield info.name, info.mode, _beside(info.name, info.linkname)
+            elif info.islnk():
+                yield info.name, info.mode, info.linkname
 
 
 def _parts(name: str) -> tuple[str, ...]:

@@ -97,6 +97,33 @@ def test_a_path_that_leads_out_is_refused(tmp_path: Path, name: str) -> None:
     assert not (tmp_path / "out").exists()
 
 
+def test_a_link_to_a_file_of_the_archive_is_this_file(tmp_path: Path) -> None:
+    """As in a folder. Students link a file to another place of their workspace."""
+    link = zipfile.ZipInfo("pkg/b")
+    link.external_attr = (stat.S_IFLNK | 0o777) << 16
+    assert files(zipped(tmp_path / "a.zip", (link, b"../a"), ("a", b"1"))) == {"a": b"1", "pkg/b": b"1"}
+    with tarfile.open(tmp_path / "a.tar", "w") as archive:
+        archive.addfile(member("pkg/c", tarfile.SYMTYPE, "./b"))
+        archive.addfile(member("pkg/b", tarfile.SYMTYPE, "../a"))
+        archive.addfile(member("pkg/loop", tarfile.SYMTYPE, "loop"))
+        archive.addfile(member("pkg/hard", tarfile.LNKTYPE, "a"))
+        archive.addfile(member("pkg/twice", tarfile.SYMTYPE, "../a"))
+        for name in ("a", "pkg/twice"):
+            info = member(name)
+            info.size = 1
+            archive.addfile(info, io.BytesIO(name[-1:].encode()))
+    linked = dict.fromkeys(("a", "pkg/b", "pkg/c", "pkg/hard"), b"a")
+    assert files(tmp_path / "a.tar") == {**linked, "pkg/twice": b"e"}
+
+
+def test_links_do_not_exceed_the_size_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unpack, "MOST_BYTES", 10)
+    link = zipfile.ZipInfo("b")
+    link.external_attr = (stat.S_IFLNK | 0o777) << 16
+    with pytest.raises(unpack.LargeArchiveError):
+        files(zipped(tmp_path / "a.zip", (link, b"a"), ("a", b"123456")))
+
+
 def test_links_and_devices_are_skipped_and_nothing_is_written_through_them(tmp_path: Path) -> None:
     outside = tmp_path / "outside"
     outside.mkdir()
