@@ -72,14 +72,15 @@ def members(scene: CrashScene, own: ast.ClassDef) -> set[str]:
 
 
 def without_publish(scene: CrashScene, own: ast.ClassDef, name: str) -> set[str]:
-    """If the line calls self.NAME.publish, return the attributes of the class that have no method publish."""
+    """If the line calls self.NAME.publish, return the methods and attributes that have no method publish."""
     if not any(dotted(call.func) == f"self.{name}.publish" for call in scene.calls_on_line("publish")):
         return set()
     made = [node for node in ast.walk(own) if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)]
-    return {
+    others = {
         target.attr
         for node in made
         if (dotted(node.value.func) or "").rpartition(".")[2] in _WITHOUT_PUBLISH  # type: ignore[attr-defined]
         for target in node.targets
         if isinstance(target, ast.Attribute)
     }
+    return {*others, *ros_names.NODE, *(each.name for each in methods(own))}

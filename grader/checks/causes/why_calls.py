@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.causes.why_ended import named_only
 from grader.checks.causes.why_init_call import why_init_call
 from grader.checks.causes.why_maker_call import why_maker_call
 from grader.checks.causes.why_operands import why_operands
@@ -170,7 +171,7 @@ def _with_init(scene: CrashScene) -> Cause | None:
 def _never_init(scene: CrashScene) -> Cause | None:
     if scene.evidence.code.calls("init"):
         return None
-    return Cause("no-init", "rclpy.init is never called.")
+    return named_only(scene.evidence, "rclpy.init") or Cause("no-init", "rclpy.init is never called.")
 
 
 def _after_shutdown(scene: CrashScene) -> Cause | None:

@@ -92,10 +92,18 @@ def why_replaced(evidence: Evidence) -> Cause | None:
 
 
 def all_zero(evidence: Evidence) -> str:
-    """Return a sentence if every command has linear.x 0 and angular.z 0, else an empty string."""
+    """Return a sentence if every command has linear.x 0 and angular.z 0, else an empty string.
+
+    A second sentence names another field that is not 0.
+    """
     commands = evidence.commands
-    zero = commands and not any(command.linear[0] or command.angular[2] for command in commands)
-    return "linear.x and angular.z are 0 in every command." if zero else ""
+    if not commands or any(command.linear[0] or command.angular[2] for command in commands):
+        return ""
+    text = "linear.x and angular.z are 0 in every command."
+    for axis, field in ((1, "linear.y"), (2, "linear.z"), (3, "angular.x"), (4, "angular.y")):
+        if any((*command.linear, *command.angular)[axis] for command in commands):
+            return f"{text} {field} does not move the turtle."
+    return text
 
 
 def line_of_values(evidence: Evidence) -> Where | None:

@@ -97,6 +97,8 @@ def test_only_assignments_of_the_same_variable_are_named(source: str, more: str)
     [
         ("self.sub = self.create_subscription(Twist, 'a', print, 10)", "self.pub.publish(msg)", "attribute-missing"),
         ("self.sub = self.create_publisher(Twist, 'a', 10)", "self.pub.publish(msg)", "attribute-misspelt"),
+        ("self.speed = 1\n    def pubs(self):\n        pass", "self.pub.publish(msg)", "attribute-missing"),
+        ("self.speed = 1\n    def pubs(self):\n        pass", "self.pub()", "attribute-misspelt"),
         ("self.sub = self.create_subscription(Twist, 'a', print, 10)", "print(self.pub)", "attribute-misspelt"),
     ],
 )

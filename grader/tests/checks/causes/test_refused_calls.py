@@ -162,3 +162,11 @@ def test_init_in_a_with_statement_is_told_from_other_uses(source: str, *, found:
     error = "TypeError: 'NoneType' object does not support the context manager protocol"
     words = "Only newer distributions allow rclpy.init in a with statement. In Jazzy, rclpy.init returns None."
     assert (reported(f"import rclpy\n{source}", error).cause == words) == found
+
+
+@pytest.mark.parametrize(
+    ("init", "diagnosis"), [("rclpy.init", "not-called"), ("print(rclpy.init)", "no-init"), ("rclpy.init()", "crash")]
+)
+def test_an_init_that_is_only_named_is_the_reason_for_a_missing_context(init: str, diagnosis: str) -> None:
+    error = "TypeError: 'NoneType' object does not support the context manager protocol"
+    assert reported(f"import rclpy\n{init}\nrclpy.spin(node)  # crashed\n", error).diagnosis == diagnosis
