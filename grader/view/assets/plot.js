@@ -117,8 +117,11 @@ export class Plot {
         .map((value) => shown(Number.isFinite(value) ? value : null)), number: this.numbers.get(name) };
     });
     for (const [name, problem] of Object.entries(this.wanted)) if (problem) rows.push({ name, problem });
-    const kept = new Map([...this.body.rows].map((row) => [row.dataset.name, row]));
-    this.body.replaceChildren(...rows.map((row) => this.row(row, kept.get(row.name))));
+    const before = [...this.body.rows];
+    const kept = new Map(before.map((row) => [row.dataset.name, row]));
+    const after = rows.map((row) => this.row(row, kept.get(row.name)));
+    // A button that is taken out of the page and put back loses the focus, and the click if it is being pressed.
+    if (after.length !== before.length || after.some((row, index) => row !== before[index])) this.body.replaceChildren(...after);
   }
 
   row({ name, cells, problem, number }, kept) {
