@@ -123,6 +123,11 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
     # If the kernel dies, the wait ends at once. A busy machine may need more than the 60 s of the base class.
     startup_timeout = Integer(300, help="Time limit for the start of the kernel, in seconds.").tag(config=True)
 
+    # On a busy machine, nbgrader may need more than the 4 s of the base class to read what a cell has printed.
+    iopub_timeout = Integer(60, help="Time limit for the outputs of a cell after it has ended, in seconds.").tag(
+        config=True
+    )
+
     def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
         keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
         super().__init__(*arguments, **keywords)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import resource
 import tempfile
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -150,6 +151,19 @@ def test_a_kernel_that_attacks_is_ended_with_a_reason(name: str, tmp_path: Path)
 def test_one_message_that_changes_many_outputs_does_not_make_a_large_notebook(tmp_path: Path) -> None:
     attacking, later = executed(tmp_path, MANY_CHANGED, "print('later')").cells
     assert (said(attacking), said(later)) == (TOO_MUCH, TOO_MUCH)
+
+
+def test_outputs_that_are_read_slowly_do_not_end_the_notebook(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    process = ConfinedExecute.process_message
+
+    def slowly(*arguments: Any) -> Any:  # noqa: ANN401
+        time.sleep(0.8)
+        return process(*arguments)
+
+    monkeypatch.setattr(ConfinedExecute, "process_message", slowly)
+    shows = "for n in range(7):\n    display(n)"
+    (cell,) = executed(tmp_path, shows).cells
+    assert [output.data["text/plain"] for output in cell.outputs] == [str(number) for number in range(7)]
 
 
 def test_cells_that_sleep_have_one_time_limit_together(tmp_path: Path) -> None:
