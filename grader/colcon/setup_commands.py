@@ -13,9 +13,10 @@ _RUN = frozenset(
     [
         *("build", "build_py", "build_scripts", "egg_info", "sdist"),
         *("install", "install_data", "install_egg_info", "install_lib", "install_scripts"),
+        *("bdist_egg", "easy_install"),
     ]
 )
-"""The commands that colcon runs, and those that they run."""
+"""The commands that colcon runs, and those that they run or import."""
 
 
 def import_commands() -> None:
