@@ -97,11 +97,12 @@ def test_a_submission_finds_its_student_in_any_spelling(file: Path, tmp_path: Pa
 def test_a_name_that_is_not_in_the_roster_changes_no_terminal(tmp_path: Path, file: Path) -> None:
     (tmp_path / "class" / "eve\x1b]0;owned\x07\u202e").mkdir(parents=True)
     file.write_text("submission,student\nann,ann\n")
-    (tmp_path / "class" / "notes.txt").touch()
+    for name in ("ben.ipynb", "notes.txt"):
+        (tmp_path / "class" / name).touch()
     done = grade(tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "out", "--roster", file)
     (line,) = [line for line in (done.stdout + done.stderr).splitlines() if "not in the roster" in line]
     assert "eve" in line
-    assert "Ignored: notes.txt is not a submission." in done.stdout
+    assert "Ignored: ben.ipynb and notes.txt are not submissions. To grade ben.ipynb, put it into" in done.stdout
     assert all(char.isprintable() for char in line)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
@@ -11,7 +13,7 @@ from typer.testing import CliRunner
 
 from grader.cli import app
 from grader.errors import MachineError
-from grader.learner import progress, steps
+from grader.learner import progress, steps, workspace
 from grader.tests.report.reports import report
 
 if TYPE_CHECKING:
@@ -40,6 +42,16 @@ def test_the_error_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
         steps.start(STEP, None)
     monkeypatch.setattr(progress, "belongs_to_root", lambda path: f"{path} belongs to root.")
     with pytest.raises(MachineError, match=re.escape(f"{lock} belongs to root.")):
+        steps.start(STEP, None)
+
+
+def test_a_workspace_of_root_is_named_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    def denied(*_: object) -> None:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), "/of/root")
+
+    monkeypatch.setattr(workspace, "add_missing", denied)
+    monkeypatch.setattr(workspace, "belongs_to_root", lambda path: f"{path} belongs to root.")
+    with pytest.raises(MachineError, match=r"Permission denied. /of/root belongs to root\."):
         steps.start(STEP, None)
 
 
