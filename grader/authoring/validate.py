@@ -11,7 +11,7 @@ from grader.authoring.lesson_commands import command_problems
 from grader.authoring.release import stale
 from grader.checks.exercises import load_exercise
 from grader.checks.outcome import Status
-from grader.common.words import a_list, count
+from grader.common.words import a_list, count, line_at
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.grading.grade import grade
@@ -166,7 +166,7 @@ def lesson_problems(file: Path, app: typer.Typer) -> Iterator[str]:
     try:
         text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
-        line = error.object.count(b"\n", 0, error.start) + 1
+        line = line_at(error.object, error.start)
         yield f"{file}, line {line}: this is not UTF-8. Save the file as UTF-8."
         return
     words = len(_CODE.sub("", text).split())

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.common.words import a_list, count, shorten
+from grader.common.words import a_list, count, line_at, shorten
 from grader.errors import UsageError
 from grader.exercise.own_numbers import SAME, normal_id
 from grader.submission.tree import shown
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-_EXCEL = re.compile(r'"?sep=(.)"?')
+_EXCEL = re.compile(r'"?sep=([^"\s]|\t)"?')
 """The line with which Excel marks the separator of a file."""
 
 
@@ -133,7 +133,7 @@ def _lines(file: Path) -> tuple[str, list[tuple[int, list[str]]]]:
         message = f"{file} cannot be read: {error.strerror}."
         raise UsageError(message) from error
     except UnicodeDecodeError as error:
-        line = error.object.count(b"\n", 0, error.start) + 1
+        line = line_at(error.object, error.start)
         message = f'{file}, line {line}: this is not UTF-8. Save the file as "CSV UTF-8" in your spreadsheet.'
         raise UsageError(message) from error
     except csv.Error as error:

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from shlex import quote
+from typing import TYPE_CHECKING
+
+from grader.common import xdg
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _ROOT = 0
 """The user id of root."""
@@ -17,8 +22,8 @@ def belongs_to_root(path: Path) -> str:
     """
     # Path.exists raises PermissionError below a folder that cannot be opened.
     there = next(above for above in (path, *path.parents) if os.path.exists(above))  # noqa: PTH110
-    home = _home()
-    if os.getuid() == _ROOT or home not in there.parents or not _is_roots(there):
+    home = xdg.home()
+    if os.getuid() == _ROOT or home == home.parent or home not in there.parents or not _is_roots(there):
         return ""
     first = there
     while first.parent != home and _is_roots(first.parent):
@@ -31,10 +36,3 @@ def belongs_to_root(path: Path) -> str:
 
 def _is_roots(path: Path) -> bool:
     return path.stat().st_uid == _ROOT
-
-
-def _home() -> Path | None:
-    try:
-        return Path.home()
-    except RuntimeError:  # the user has no home
-        return None

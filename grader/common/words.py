@@ -66,3 +66,8 @@ def number(value: float, unlike: float | None = None) -> str:
 def count(amount: int, thing: str) -> str:
     """Return '1 command' or '20 commands'."""
     return f"{amount} {thing}" if amount == 1 else f"{amount} {thing}s"
+
+
+def line_at(data: bytes, position: int) -> int:
+    """Return the number of the line that contains the byte at this position. The first line has the number 1."""
+    return data.count(b"\n", 0, position) + 1

@@ -6,7 +6,7 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.common.words import nearest, shorten
+from grader.common.words import line_at, nearest, shorten
 from grader.errors import UsageError
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def read_toml(data: bytes, name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        line = error.object.count(b"\n", 0, error.start) + 1
+        line = line_at(data, error.start)
         message = f"{name}: invalid TOML: line {line} is not UTF-8. Save the file as UTF-8."
         raise UsageError(message) from error
     except tomllib.TOMLDecodeError as error:

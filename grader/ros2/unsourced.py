@@ -8,6 +8,7 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
+from grader.common import xdg
 from grader.common.words import nearest, printable
 from grader.ros import index
 from grader.ros.failure import Ros2Error
@@ -60,7 +61,7 @@ def meant(package: str, installed: Collection[str]) -> str:
 def _workspaces() -> Iterator[Path]:
     """Yield possible workspaces: the current folder, its parents, and the workspace of the ROS 2 tutorials."""
     cwd = Path.cwd()
-    for folder in dict.fromkeys([cwd, *cwd.parents, Path.home() / "ros2_ws"]):
+    for folder in dict.fromkeys([cwd, *cwd.parents, xdg.home() / "ros2_ws"]):
         if folder != folder.parent and any((folder / name).is_dir() for name in ("install", "src")):
             yield folder
 
@@ -87,5 +88,5 @@ def _name(manifest: Path) -> str:
 
 def _shown(path: Path) -> str:
     """Return a path as a user would type it."""
-    home = Path.home()
+    home = xdg.home()
     return f"~/{quote(str(path.relative_to(home)))}" if path.is_relative_to(home) else quote(str(path))

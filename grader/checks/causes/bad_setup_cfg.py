@@ -8,6 +8,7 @@ import re
 
 from grader.checks.cause import Cause
 from grader.checks.causes.syntax import UTF_16
+from grader.common.words import line_at
 from grader.submission.where import Where
 
 FILE = "setup.cfg"
@@ -26,7 +27,7 @@ def why_setup_cfg_unreadable(data: bytes) -> Cause | None:
             return Cause("setup-cfg", "Save the file as UTF-8 without a byte order mark (BOM).", Where(FILE))
         parser.read_string(data.decode("utf-8"))
     except UnicodeDecodeError as error:
-        return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, data.count(b"\n", 0, error.start) + 1))
+        return Cause("not-utf8", "Save the file as UTF-8.", Where(FILE, line_at(data, error.start)))
     except configparser.MissingSectionHeaderError as error:
         text = "A line with a section, such as [develop], must come before this line."
         if SECTION.match(error.line):

@@ -38,6 +38,12 @@ def test_the_home_itself_and_files_elsewhere_are_not_to_be_changed(home: Path) -
     assert belongs_to_root(home.parent / "new") == ""
 
 
+def test_the_root_folder_is_nobodys_home(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The user database of a container may not contain the user."""
+    monkeypatch.setenv("HOME", "/")
+    assert belongs_to_root(home / "my ws") == ""
+
+
 def test_for_root_and_for_ones_own_files_there_is_no_sentence(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(roots_files, "_ROOT", os.getuid() + 7)
     assert belongs_to_root(home / "my ws") == ""
