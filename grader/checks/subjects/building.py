@@ -44,7 +44,7 @@ IGNORED = (
 BY_SETUP_PY = "colcon builds an ament_python package by running its setup.py."
 FOR_CPP = (
     "The package has a CMakeLists.txt, which colcon uses to build packages in C++. A package in Python needs a "
-    "setup.py: `ros2 pkg create --build-type ament_python` creates a package with one."
+    "setup.py: `ros2 pkg create --build-type ament_python PACKAGE` creates a package with one."
 )
 EXPECTED = "`colcon build` succeeds and installs the package."
 OTHER_TYPE = (
