@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from grader.trial.node_process import NodeProcess
-    from grader.trial.rest import Wait
+    from grader.trial.wait import Wait
 
 
 SETTLES_S = 1.0
@@ -118,7 +118,7 @@ def _sleeps(pid: int) -> bool:
 class GroupThreads:
     """The threads of several processes, with the methods of `Threads`.
 
-    All methods except `close` and `runs` can raise GoneError, which means that one of the processes has exited.
+    All methods except `close` and `cpu_ns` can raise GoneError, which means that one of the processes has exited.
     """
 
     def __init__(self, pids: Sequence[int], wanted: Callable[[str], bool] = lambda _: True) -> None:
@@ -144,9 +144,13 @@ class GroupThreads:
         """Read the state of every thread once, and return the result for each process."""
         return [threads.look() for threads in self._each]
 
-    def runs(self) -> tuple[bytes, ...]:
-        """Return the schedstat line of each thread in the last observation (see `Look`)."""
-        return sum((threads.runs() for threads in self._each), ())
+    def cpu_ns(self) -> tuple[int, ...]:
+        """Return the CPU time that each process has used (ns), which has grown if a thread has run."""
+        return sum((threads.cpu_ns() for threads in self._each), ())
+
+    def asleep(self) -> bool:
+        """Return whether every thread of every process is sleeping."""
+        return all(threads.asleep() for threads in self._each)
 
     def main_asleep(self) -> bool:
         """Return whether all main threads are sleeping."""

@@ -19,8 +19,9 @@ from rosgraph_msgs.msg import Clock
 from grader.common.linux_calls import sleep_precisely
 from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
-from grader.trial.rest import HIDDEN, DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
+from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.simulation import Simulation
+from grader.trial.wait import HIDDEN
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
@@ -140,38 +141,26 @@ class SimulatedTrial(Simulation):
     def _watch(self) -> None:
         self._node = GroupThreads(self.node.pids)
         self._own = Threads(os.getpid(), of_dds)
-        self._received: tuple[bytes, ...] = ()
-        self._handled: tuple[bytes, ...] = ()
+        self._received: tuple[int, ...] = ()
+        self._handled: tuple[int, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
         """Before the clock advances, wait until neither the node nor the simulator has anything left to do.
 
         Return False if this takes longer than `patience` allows.
         """
-        before: tuple[bytes, ...] | None = None
-        equal = 0
         while True:
             # The main thread usually works longest. While it works, the other threads need not be checked.
-            if not self._node.main_asleep():
-                before = None
+            asleep = self._node.main_asleep()
+            if asleep:
+                node, own = self._node.cpu_ns(), self._own.cpu_ns()
+                asleep = self._node.asleep() and self._own.asleep()
+                still = self._node.cpu_ns() == node and self._own.cpu_ns() == own
+                if asleep and still and not self.node.waited_to_write(self.node.read_output(self._now_s)):
+                    self._received = self._own.only(own, receives)
+                    return True
+            if not asleep:
                 time.sleep(_POLL_S)
-            elif before is None:
-                before, equal = self._node.runs() + self._own.runs(), 0
-                continue
-            else:
-                node, own = self._node.look(), self._own.look()
-                runs = node.runs + own.runs
-                asleep = node.asleep and own.asleep
-                if asleep and runs == before:
-                    equal += 1
-                    if equal < (1 if node.counted else 3):
-                        continue
-                    if not self.node.waited_to_write(self.node.read_output(self._now_s)):
-                        self._received = self._own.only(own, receives)
-                        return True
-                before, equal = runs, 0
-                if not asleep:
-                    time.sleep(_POLL_S)
             # Threads that keep waking up and falling asleep appear asleep each time.
             if patience.ended(time.monotonic()):
                 return False

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
+import threading
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 
 from grader.tests.descriptors import descriptors
 from grader.tests.trial.program import python
 from grader.tests.waiting import until
-from grader.trial.rest import GoneError, Threads, receives
+from grader.trial.rest import GoneError, Threads, not_of_dds, receives
 
 WAITS_ON_A_LINE = "import sys; print('ready', flush=True); sys.stdin.readline(); print('woken', flush=True); "
 
@@ -30,20 +32,68 @@ def test_a_process_that_ran_between_two_looks_shows_it_though_it_sleeps_in_both(
         assert process.stdin is not None
         assert process.stdout is not None
         until_asleep(threads)
-        until(lambda: threads.look().runs == threads.runs())
-        before, runs = threads.look(), threads.runs()
+        until(lambda: threads.look() == threads.look())
+        before, cpu_ns = threads.look(), threads.cpu_ns()
+        assert threads.asleep()
+        assert threads.cpu_ns() == cpu_ns
         process.stdin.write("\n")
         process.stdin.flush()
         assert process.stdout.readline() == "woken\n"
-        until_asleep(threads)
+        until(threads.asleep)
         assert before.counted
         assert threads.look() != before
-        assert threads.runs() != runs
+        assert threads.cpu_ns() > cpu_ns
+
+
+def test_the_work_of_every_thread_of_another_process_counts_even_of_one_that_has_ended() -> None:
+    code = (
+        "import sys, threading\ndef work():\n for _ in range(1000): pass\n"
+        "print('ready', flush=True)\nsys.stdin.readline()\nthread = threading.Thread(target=work)\n"
+        "thread.start()\nthread.join()\nprint('worked', flush=True)\nsys.stdin.readline()"
+    )
+    with python(code) as process, closing(Threads(process.pid, receives)) as threads:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        before = threads.cpu_ns()
+        assert len(before) == 1
+        process.stdin.write("\n")
+        process.stdin.flush()
+        assert process.stdout.readline() == "worked\n"
+        assert threads.cpu_ns() > before
+
+
+def test_of_this_process_only_the_observed_threads_count() -> None:
+    name, go_on, worked, end = "dds.udp.1", threading.Event(), threading.Event(), threading.Event()
+
+    def work() -> None:
+        Path(f"/proc/self/task/{threading.get_native_id()}/comm").write_text(name)
+        worked.set()
+        go_on.wait()
+        worked.set()
+        end.wait()
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    assert worked.wait(60)
+    worked.clear()
+    with closing(Threads(os.getpid(), receives)) as threads:
+        until(threads.asleep)  # this thread runs, but it is not observed
+        before = threads.cpu_ns()
+        assert len(before) == 1
+        assert threads.only(before, receives) == before
+        assert threads.only(before, not_of_dds) == ()
+        assert threads.cpu_ns() == before
+        go_on.set()
+        assert worked.wait(60)
+        until(threads.asleep)
+        assert threads.cpu_ns() > before
+    end.set()
+    thread.join()
 
 
 def test_a_busy_process_does_not_rest() -> None:
     with python("print('ready', flush=True)\nwhile True: pass") as process, closing(Threads(process.pid)) as threads:
-        assert not any(threads.look().asleep for _ in range(100))
+        assert not any(threads.look().asleep or threads.asleep() for _ in range(100))
         assert not threads.main_asleep()
 
 
@@ -55,6 +105,7 @@ def test_a_second_thread_counts() -> None:
         for _ in range(100):
             with closing(Threads(process.pid)) as threads:
                 assert not threads.look().asleep
+                assert not threads.asleep()
 
 
 @pytest.mark.parametrize(
@@ -105,13 +156,14 @@ def test_a_name_of_a_thread_need_not_be_text() -> None:
 
 def test_the_end_of_a_process_is_reported() -> None:
     with python(WAITS_ON_A_LINE) as process, closing(Threads(process.pid)) as threads:
-        before = threads.runs()
-        assert before
+        assert threads.cpu_ns()
         process.kill()
         process.wait()
-        assert threads.runs() == ()
+        assert threads.cpu_ns() == ()
         with pytest.raises(GoneError):
             threads.look()
+        with pytest.raises(GoneError):
+            threads.asleep()
 
 
 def test_the_files_of_a_process_that_has_ended_are_closed() -> None:
