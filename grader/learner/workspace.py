@@ -29,6 +29,8 @@ together with the learner's packages."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg", ANSWERS)
 """Package files to which later steps add lines."""
 _ENTRY_POINT = re.compile(r"[\"'](?P<name>[\w.-]+) = [\w.]+:\w+[\"'],?")
+_KEYWORD = re.compile(r"(?P<name>\w+)=")
+_DEPENDENCY = re.compile(r"<(?P<tag>\w*depend)\b[^>]*>\s*(?P<name>[\w.-]+)\s*</")
 _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 
 
@@ -208,9 +210,29 @@ def _lacking(theirs: Path, mine: bytes) -> tuple[str, ...]:
     def plain(text: str) -> str:
         return "".join(text.replace("'", '"').split()).rstrip(",")
 
-    known = plain(mine.decode("utf-8", "replace"))
+    known = mine.decode("utf-8", "replace")
     lines = (line.strip() for line in theirs.read_text(encoding="utf-8").splitlines())
-    return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
+    new = (line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in plain(known))
+    return tuple(line for line in new if not _is_own(theirs.name, line, known))
+
+
+def _is_own(file: str, line: str, known: str) -> bool:
+    """Return whether the step does not need `line` of its package file, because the learner's file has its own version.
+
+    A learner may change the name of the maintainer, for example, or declare a package with <exec_depend>. Whoever adds
+    a keyword argument to setup.py that is already there gets a SyntaxError.
+    """
+    if file == "package.xml":
+        needed = _DEPENDENCY.search(line)
+        if needed is None:
+            return "<build_type>" not in line
+        enough = ("depend", "exec_depend") if needed["tag"] == "depend" else ()
+        declared = _DEPENDENCY.finditer(known)
+        return any(each["name"] == needed["name"] and (not enough or each["tag"] in enough) for each in declared)
+    if file == "setup.py" and not _ENTRY_POINT.fullmatch(line):
+        keyword = _KEYWORD.match(line)
+        return keyword is None or re.search(rf"\b{keyword['name']}\s*=[^=]", known) is not None
+    return False
 
 
 def _questions(theirs: Path, mine: bytes) -> tuple[str, ...]:

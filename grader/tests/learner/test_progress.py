@@ -145,6 +145,25 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 
+def test_start_asks_for_no_line_of_which_the_learner_has_an_own_version(home: Path) -> None:
+    steps.start("12", None)
+    package = home / "ros2_ws/src/my_robot_controller"
+    setup = package / "setup.py"
+    own = (
+        setup.read_text().replace('maintainer="Student"', 'maintainer="Ada"').replace('version="0.1.0"', "version='2'")
+    )
+    own = own.replace("import find_packages, setup", "import setup").replace('find_packages(exclude=["test"])', "[]")
+    setup.write_text(
+        own.replace("zip_safe=", 'extras_require={\n    "test": ["pytest", "flake8"],\n    },\n    zip_safe=')
+    )
+    manifest = package / "package.xml"
+    other = manifest.read_text().replace(">Student<", ">Ada<").replace("Nodes that", "What").replace("0.1.0", "2.0.0")
+    manifest.write_text(other.replace("<depend>rclpy</depend>", '<exec_depend version_gte="7.0">rclpy</exec_depend>'))
+    assert steps.start("13", None).started.lacking == {"package.xml": ("<test_depend>python3-pytest</test_depend>",)}
+    manifest.write_text(manifest.read_text().replace("<exec_depend version", "<build_depend version"))
+    assert "<depend>rclpy</depend>" in steps.start("13", None).started.lacking["package.xml"]
+
+
 def test_start_lists_the_questions_that_answers_toml_does_not_have() -> None:
     steps.start("05", None)
     begun = steps.start("11", None)
