@@ -174,9 +174,11 @@ def build(
 ) -> None:
     """Create the archive to upload to Gradescope as an autograder."""
     from grader.classroom.gradescope_archive import build_archive
+    from grader.report.output_file import check_writable
 
     if file.is_dir() or file.suffix != ".zip":
         message = f"{file} is a folder, or does not end in .zip. Choose another name that ends in .zip."
         raise UsageError(message)
+    check_writable(file)
     build_archive(exercise, file, checks, trusted=trusted)
     typer.echo(f"Upload {file} to Gradescope: open your assignment, then Configure Autograder.")

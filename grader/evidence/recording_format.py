@@ -146,6 +146,11 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
     Raises:
         UsageError: the folder is not an archive that this version of the grader can read.
     """
+    if not os.path.lexists(folder / "submission.json"):
+        is_none = f"{folder} is not a recording: it has no submission.json"
+        message = is_none if folder.is_dir() else f"There is no folder {folder}"
+        message = f"{message}. Give the folder that `grader check --recording` wrote."
+        raise UsageError(message)
     try:
         about = _read(folder / "submission.json")
         kept = read_exercise(folder / "exercise" / FILE_NAME)

@@ -277,7 +277,8 @@ class Watched:
             self._warm = None
 
     def _open(self) -> Submission:
-        return open_submission(self.folder) if self.exercise.package else open_answers(self.folder)
+        named = self.exercise.package
+        return open_submission(self.folder, named) if named else open_answers(self.folder)
 
     def _next_trial(self, plan: Plan, ros: Ros, *, in_cell: bool) -> Trial:
         # The next grading will begin with the same trial as this grading.

@@ -57,7 +57,10 @@ def _handed_in(name: str, path: Path, exercise: Exercise, exactly: bool) -> Subm
     missing: UsageError | None = None
     found = None
     try:
-        found = (open_submission if exercise.package else open_answers)(name, exactly=exactly)
+        if exercise.package:
+            found = open_submission(name, exercise.package, exactly=exactly)
+        else:
+            found = open_answers(name, exactly=exactly)
     except NoPackageError as error:
         missing = error
     root = path if exactly else path.resolve()

@@ -57,30 +57,31 @@ class Submission:
     """Sentences about notebooks whose cells were not used, or an empty string."""
 
 
-def open_submission(path: str | os.PathLike[str], *, exactly: bool = False) -> Submission:
+def open_submission(path: str | os.PathLike[str], package: str = "", *, exactly: bool = False) -> Submission:
     """Read the package in this folder, or the only package in the folders below it.
 
-    With `exactly`, the path must not contain a link.
+    If there are several packages, read the one with the name `package`. With `exactly`, the path must not contain a
+    link.
 
-    Raises UsageError if there is no such folder or if it does not contain exactly one package, UnreadableError if the
-    folder cannot be read within the limits of `read`, and MachineError if the disk or the system fails. Every other
+    Raises UsageError if there is no such folder or if it does not contain exactly one such package, UnreadableError if
+    the folder cannot be read within the limits of `read`, and MachineError if the disk or the system fails. Every other
     problem is the student's fault and is listed in `rejected`.
     """
-    return _read(_submission, os.fspath(path), exactly)
+    return _read(_submission, os.fspath(path), exactly, package)
 
 
-def _read(function: Callable[[str, Path, bool], Submission], name: str, exactly: bool) -> Submission:
+def _read(function: Callable[..., Submission], name: str, exactly: bool, *wanted: str) -> Submission:
     try:
-        return read(function, name, Path(name), exactly)
+        return read(function, name, Path(name), exactly, *wanted)
     except UnreadableError as error:
         message = f"{shown(name)} cannot be opened: {error}."
         raise type(error)(message) from error
 
 
-def _submission(name: str, path: Path, exactly: bool) -> Submission:
+def _submission(name: str, path: Path, exactly: bool, wanted: str) -> Submission:
     try:
         with _opened(path, exactly) as root:
-            package = find_package(root, name)
+            package = find_package(root, name, wanted)
             with tree.open_below(root, package) as folder:
                 found = tree.read_tree(folder)
     except OSError as error:

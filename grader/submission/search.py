@@ -1,7 +1,7 @@
-"""Find the only package in a folder, or explain to a beginner why there is not exactly one.
+"""Find the package of an exercise in a folder, or explain to a beginner why there is not exactly one.
 
 As in colcon, a folder that contains package.xml or setup.py is a package, and all folders below it belong to the
-package.
+package. In a workspace with several packages, the exercise's package is the only one with the right name.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import posixpath
+import re
 import stat
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,6 +24,8 @@ IGNORE_MARKER = "COLCON_IGNORE"
 GIVE = "Give the folder of your package: the one that contains package.xml."
 _PACKED = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.xz", ".tar.bz2", ".7z", ".rar")
 MAX_FOLDERS = 5000
+_MAX_READ = 65_536
+_NAME = re.compile(rb"<name>\s*([^<]*?)\s*</name>")
 MAX_NAMED = 10
 """The maximum number of files, folders or packages that an error message names."""
 
@@ -32,7 +35,7 @@ class NoPackageError(UsageError):
 
 
 class SeveralPackagesError(UsageError):
-    """A folder contains more than one package."""
+    """A folder contains more than one package, and not exactly one of them has the name of the exercise's package."""
 
 
 @dataclass
@@ -49,10 +52,11 @@ class _Search:
     folders: int = 0
 
 
-def find_package(root: int, name: str) -> str:
+def find_package(root: int, name: str, wanted: str = "") -> str:
     """Return the POSIX path of the only package in the folder `root`, or "." if the package is the folder itself.
 
-    `name` is the path as the user typed it.
+    `name` is the path as the user typed it. If there are several packages, and exactly one of them has the name
+    `wanted`, return that package.
 
     Raises NoPackageError if there is no package, SeveralPackagesError if there is more than one package, and UsageError
     if there are too many folders.
@@ -64,7 +68,10 @@ def find_package(root: int, name: str) -> str:
     if not search.packages:
         message = _none(search, root, name)
         raise NoPackageError(message)
-    message = _several(search.packages, name)
+    of_that_name = [path for path in search.packages if wanted and _is_named(wanted, root, path)]
+    if len(of_that_name) == 1:
+        return of_that_name[0]
+    message = _several(of_that_name or search.packages, name)
     raise SeveralPackagesError(message)
 
 
@@ -123,6 +130,19 @@ def _is_folder_behind(name: str, folder: int) -> bool:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:
         return False
+
+
+def _is_named(wanted: str, root: int, path: str) -> bool:
+    """Return whether package.xml has this name. Without a name in package.xml, the name of the folder counts."""
+    named = None
+    try:
+        with tree.open_below(root, path) as folder, tree.open_file(Path(PACKAGE_FILES[0]), parent=folder) as manifest:
+            named = _NAME.search(manifest.read(_MAX_READ))
+    except OSError as error:
+        tree.reason(error, path)  # this raises an exception if the machine is at fault
+    except ValueError:  # package.xml is a pipe or the like
+        pass
+    return named[1] == wanted.encode() if named else posixpath.basename(path) == wanted
 
 
 def _several(packages: list[str], name: str) -> str:

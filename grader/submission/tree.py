@@ -96,17 +96,17 @@ def open_folder(name: str, parent: int | None = None, *, follow: bool = False) -
         os.close(descriptor)
 
 
-def open_file(path: Path, *, at: Path | None = None) -> IO[bytes]:
+def open_file(path: Path, *, at: Path | None = None, parent: int | None = None) -> IO[bytes]:
     """Open a regular file. A link to the file is never followed, and the function never waits for a pipe.
 
-    See `require_path` for the meaning of `at`.
+    See `require_path` for the meaning of `at`. With `parent`, the path begins at the folder with this descriptor.
 
     Raises:
         OSError: the file cannot be opened.
         ValueError: the entry is not a regular file.
     """
     with ExitStack() as stack:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=parent)
         file = stack.enter_context(os.fdopen(descriptor, "rb"))
         if at is not None:
             require_path(descriptor, at)

@@ -90,6 +90,15 @@ def test_the_script_explains_a_wrong_call(tmp_path: Path, arguments: tuple[str, 
     assert "grade.sh" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("file", "said"), [("none/a.zip", "There is no folder"), (".", "is a folder"), ("autograder", "ends in .zip")]
+)
+def test_a_file_that_cannot_be_the_archive_is_a_wrong_command(tmp_path: Path, file: str, said: str) -> None:
+    done = run(BIN / "grader", "gradescope", "build", STEP, tmp_path / file)
+    assert (done.returncode, said in " ".join(done.stderr.split())) == (2, True), done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_gradescopes_archive_grades_a_submission(tmp_path: Path) -> None:
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")

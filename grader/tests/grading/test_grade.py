@@ -97,6 +97,17 @@ def test_a_damaged_recording_is_a_sentence(tmp_path: Path, recorded: Path, damag
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("name", "said"), [("", "is not a recording: it has no submission.json"), ("none", "no folder")]
+)
+def test_a_folder_that_is_no_recording_is_reported(tmp_path: Path, name: str, said: str) -> None:
+    done = grader("regrade", tmp_path / name)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert said in done.stderr
+    assert "Give the folder that `grader check --recording` wrote." in done.stderr.replace("\n", " ")
+    assert "Error" not in done.stderr
+
+
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("recorded") / "kept"

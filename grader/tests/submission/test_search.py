@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from grader.errors import UsageError
 from grader.submission import tree
 from grader.submission.package import open_answers, open_submission
+from grader.submission.search import SeveralPackagesError
 from grader.tests.submission.folder import PACKAGE, make
 
 if TYPE_CHECKING:
@@ -168,6 +170,57 @@ def test_several_packages_are_listed(tmp_path: Path) -> None:
     message = refused(tmp_path)
     assert f"contains 2 packages: {tmp_path}/src/one, {tmp_path}/src/two." in message
     assert message.endswith(f"for example {tmp_path}/src/one.")
+
+
+NAMED = "<package><name> {} </name></package>"
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "chosen"),
+    [
+        ({"package.xml": NAMED.format("turtle")}, {"package.xml": NAMED.format("other")}, "one"),
+        ({"package.xml": NAMED.format("other")}, {"package.xml": NAMED.format("turtle")}, "two"),
+        ({"package.xml": NAMED.format("turtle")}, {"package.xml": "<package"}, "one"),
+        ({"package.xml": NAMED.format("turtle")}, {"setup.py": ""}, "one"),
+    ],
+)
+def test_of_several_packages_the_only_one_of_the_right_name_counts(
+    tmp_path: Path, one: dict[str, str | bytes], two: dict[str, str | bytes], chosen: str
+) -> None:
+    make(tmp_path / "src/one", one)
+    make(tmp_path / "src/two", two)
+    assert open_submission(tmp_path, "turtle").package_dir == tmp_path / "src" / chosen
+    with pytest.raises(SeveralPackagesError, match="contains 2 packages"):
+        open_submission(tmp_path)
+    with pytest.raises(SeveralPackagesError, match="contains 2 packages"):
+        open_submission(tmp_path, "whale")
+
+
+@pytest.mark.parametrize("manifest", [None, "<package/>", "pipe", "link", "secret"])
+def test_without_a_name_in_package_xml_the_name_of_the_folder_counts(tmp_path: Path, manifest: str | None) -> None:
+    package = make(tmp_path / "src/turtle", {"setup.py": ""})
+    make(tmp_path / "src/other", PACKAGE)
+    file = package / "package.xml"
+    if manifest == "pipe":
+        os.mkfifo(file)
+    elif manifest == "link":
+        (tmp_path / "outside").write_text(NAMED.format("other"))
+        file.symlink_to(tmp_path / "outside")
+    elif manifest is not None:
+        file.write_text("" if manifest == "secret" else manifest)
+    if manifest == "secret":
+        file.chmod(0)
+    assert open_submission(tmp_path, "turtle").package_dir == package
+
+
+def test_two_packages_of_the_right_name_are_named_without_the_others(tmp_path: Path) -> None:
+    for name in ("turtle", "turtle (copy)"):
+        make(tmp_path / "src" / name, {"package.xml": NAMED.format("turtle")})
+    make(tmp_path / "src/other", PACKAGE)
+    with pytest.raises(SeveralPackagesError) as raised:
+        open_submission(tmp_path, "turtle")
+    assert "contains 2 packages" in str(raised.value)
+    assert "other" not in str(raised.value)
 
 
 def test_too_many_folders_end_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
