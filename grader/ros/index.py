@@ -6,6 +6,7 @@ This module only reads files, so the verbs that use it do not need rclpy.
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 _INDEX = Path("share/ament_index/resource_index")
 KINDS = ("msg", "srv", "action")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def prefixes() -> list[Path]:
@@ -103,6 +105,18 @@ def all_interfaces(kind: str | None = None) -> list[str]:
     """Return the interfaces of all packages, or only the interfaces of one kind ("msg", "srv" or "action")."""
     found = (name for package in interface_packages() for name in interfaces(package))
     return [name for name in found if kind in (None, name.split("/")[1])]
+
+
+def has_interface(package: str, kind: str, name: str) -> bool:
+    """Return whether the interface is installed. `name` may also be that of a part, such as SetPen_Request.
+
+    The names may come from another program: any string that is not a name of ROS 2 is not installed.
+    """
+    if not (_NAME.fullmatch(package) and _NAME.fullmatch(name)):
+        return False
+    file = name.partition("_")[0]
+    folders = [prefix / "share" / package / kind for prefix in prefixes()]
+    return any((folder / f"{file}.{ending}").is_file() for folder in folders for ending in (kind, "idl"))
 
 
 def interface_file(name: str) -> Path:

@@ -19,7 +19,8 @@ Stamper = Callable[[Any], None]
 def load_type(name: str, kind: str, what: str = "message type", text: str = "") -> Any:  # noqa: ANN401
     """Return the Python class of an interface such as "geometry_msgs/msg/Twist".
 
-    The middle part of the name is optional.
+    The middle part of the name is optional. The name may come from another program or a bag, and an import runs the
+    module. So nothing is imported unless an interface with this name is installed.
 
     Raises:
         Ros2Error: the interface is not installed. The message begins with `text`, or contains `what` if `text` is
@@ -28,7 +29,7 @@ def load_type(name: str, kind: str, what: str = "message type", text: str = "") 
     parts = name.split("/")
     package, last = parts[0], parts[-1]
     try:
-        if parts not in ([package, last], [package, kind, last]):
+        if parts not in ([package, last], [package, kind, last]) or not index.has_interface(package, kind, last):
             raise ModuleNotFoundError
         return getattr(importlib.import_module(f"{package}.{kind}"), last)
     except (ImportError, AttributeError, ValueError, TypeError) as error:

@@ -39,3 +39,16 @@ def test_a_suggested_interface_exists(prefix: Path, name: str, monkeypatch: pyte
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
     with pytest.raises(Ros2Error, match="Did you mean 'things/srv/Open'"):
         index.interface_file(name)
+
+
+def test_an_interface_is_installed_if_its_file_exists(prefix: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
+    for file in ("msg/Box.msg", "srv/Open.idl"):
+        path = prefix / "share/things" / file
+        path.parent.mkdir(parents=True)
+        path.write_text("")
+    assert index.has_interface("things", "msg", "Box")
+    assert index.has_interface("things", "srv", "Open")
+    assert index.has_interface("things", "srv", "Open_Request")
+    assert not index.has_interface("things", "msg", "Open")
+    assert not index.has_interface("things/msg/..", "msg", "../msg/Box")

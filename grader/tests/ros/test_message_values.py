@@ -27,6 +27,18 @@ class Point:
         return {"x": "double", "label": "string"}
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["this/msg/Zen", "this/Zen", "idlelib.idle/msg/Zen", "../this/msg/Zen", "\0/msg/Zen", "this/msg/../Zen", "", "/"],
+)
+def test_a_type_that_is_not_installed_is_not_imported(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    imported: list[str] = []
+    monkeypatch.setattr("grader.ros.message_values.importlib.import_module", imported.append)
+    with pytest.raises(Ros2Error):
+        message_values.load_type(name, "msg")
+    assert imported == []
+
+
 class Path_:  # noqa: N801
     def __init__(self) -> None:
         self.start = Point()

@@ -47,6 +47,18 @@ def test_a_type_that_is_not_installed_is_reported_on_one_line(tmp_path: Path) ->
         assert done.code == 1
 
 
+def test_playing_a_bag_imports_no_module_that_only_the_bag_names(tmp_path: Path) -> None:
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for topic, module in (("/zen", "this"), ("/environment", "venv.__main__")):
+            connection = writer.add_connection(topic, f"{module}/msg/Zen", msgdef=DEFINITION, rihs01=HASH)
+            writer.write(connection, *SENT[0])
+    for here in world(tmp_path):
+        done = here.run(f"cd {tmp_path} && ros2 bag play bag")
+        assert done.code == 1
+        assert "The Zen of Python" not in done.stdout
+        assert not (tmp_path / "play").exists()
+
+
 def without_chunks(folder: Path) -> None:
     """Rewrite the only file of a bag without chunks, as rosbag2 does with the profile fastwrite."""
     (file,) = folder.glob("*.mcap")
