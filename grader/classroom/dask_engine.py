@@ -21,6 +21,7 @@ from grader.classroom.worker import Worker
 from grader.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import TracebackType
 
     from grader.classroom.task import Done, Task
@@ -72,7 +73,7 @@ class _Running:
 class DaskEngine:
     """Grades submissions with Dask workers. Each thread of a worker grades one submission at a time."""
 
-    def __init__(self, address: str, jobs: int | None) -> None:
+    def __init__(self, address: str, jobs: int | None, tell: Callable[[str], None] = lambda _: None) -> None:
         try:
             from distributed import Client
         except ImportError as error:
@@ -93,6 +94,8 @@ class DaskEngine:
         self._threads: dict[str, int] = {}
         self._looked = 0.0
         self._last_heard_from = time.monotonic()
+        if not self._worker_threads():
+            tell(f"Waiting up to {WORKERS_S:.0f} s for a worker of Dask: start one with `{_start(address)}`")
 
     def __enter__(self) -> DaskEngine:  # noqa: PYI034 - typing.Self is Python 3.11's
         self._look()
@@ -141,6 +144,10 @@ class DaskEngine:
             happened += self._look()
         return happened
 
+    def _worker_threads(self) -> dict[str, int]:
+        """Return the number of threads of each worker, by the address of the worker."""
+        return dict(self._client.nthreads())
+
     def _event(self, ended: _Running) -> Event:
         try:
             kind, what = ended.future.result(timeout=CONNECT_S)
@@ -164,7 +171,7 @@ class DaskEngine:
         """Update the list of workers. Return an event for each task whose worker was lost."""
         self._looked = time.monotonic()
         try:
-            self._threads = dict(self._client.nthreads())
+            self._threads = self._worker_threads()
         except Exception as error:
             message = (
                 f"The connection to Dask's scheduler was lost ({error}). The results so far are kept. Run "
@@ -174,12 +181,14 @@ class DaskEngine:
         if self._threads:
             self._last_heard_from = time.monotonic()
         elif time.monotonic() - self._last_heard_from > WORKERS_S:
-            message = (
-                f"Dask has had no worker for {WORKERS_S:.0f} s: start one with `python -I -m dask worker HOST:PORT`."
-            )
+            message = f"Dask has had no worker for {WORKERS_S:.0f} s: start one with `{_start('HOST:PORT')}`."
             raise MachineError(message)
         lost = [key for key, each in self._running.items() if each.where not in self._threads]
         gone = [self._running.pop(key) for key in lost]
         for each in gone:
             each.future.cancel(force=True)
         return [Died(each.task, f"the worker {each.where} was lost") for each in gone]
+
+
+def _start(address: str) -> str:
+    return f"python -I -m dask worker {address}"

@@ -9,7 +9,7 @@ contains the reason. This module uses os.path, because the functions of os.path 
 accessed. Before Python 3.14, the methods of pathlib raise an exception.
 """
 
-# ruff: noqa: PTH100, PTH110, PTH112, PTH113, PTH114, PTH118
+# ruff: noqa: PTH110, PTH112, PTH113, PTH114
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from grader.checks.exercises import find_exercise
 from grader.classroom import archives
 from grader.classroom.duplicates import without_duplicates
 from grader.classroom.found import UNKNOWN, Found, what_to_do_with
+from grader.classroom.own_folders import has_results, is_same
 from grader.classroom.refused import Refused
 from grader.common.words import a_list
 from grader.errors import UsageError
@@ -115,7 +116,7 @@ def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
         if _student(entry) is None
         and not _why_not_graded(entry)
         and not (entry.name.startswith(".") and os.path.isfile(entry))
-        and not _same(entry, leave_out)
+        and not _is_of_grader(entry, leave_out)
     )
 
 
@@ -128,19 +129,9 @@ def _entries(folder: Path) -> list[Path]:
         raise UsageError(message) from error
 
 
-def _same(one: Path, other: Path) -> bool:
-    """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error.
-
-    If `one` is a link to `other`, the result is False: a student may have created the link to avoid being graded.
-    """
-    if os.path.islink(one):
-        return _without_links_above(one) == _without_links_above(other)
-    return os.path.realpath(one) == os.path.realpath(other)
-
-
-def _without_links_above(path: Path) -> str:
-    folder, name = os.path.split(os.path.abspath(path))
-    return os.path.join(os.path.realpath(folder), name)
+def _is_of_grader(entry: Path, leave_out: Path) -> bool:
+    """Return whether the entry is a folder of results, of this run or of an earlier one."""
+    return is_same(entry, leave_out) or (not os.path.islink(entry) and has_results(entry))
 
 
 def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
@@ -148,6 +139,12 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         message = f"{shown(str(path))} does not exist. Give the folder with one folder or archive per student."
         raise UsageError(message)
     absolute = Path(os.path.realpath(path))
+    if has_results(absolute):
+        message = (
+            f"{shown(str(path))} contains results of `grader grade`, and not submissions. Give the folder with one "
+            "folder or archive per student."
+        )
+        raise UsageError(message)
     if not os.path.isdir(path) or _is_one_alone(path):
         name = absolute.name if os.path.isdir(path) else archives.stem(absolute.name)
         if name is None:
@@ -162,7 +159,7 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
         yield from _of_student(name, absolute, wanted)
         return
     for entry in _entries(absolute):
-        if _same(entry, leave_out):
+        if _is_of_grader(entry, leave_out):
             continue
         name = _student(entry)
         if name is not None:

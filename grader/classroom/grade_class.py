@@ -98,7 +98,7 @@ def grade_found(
             say(remark)
         graded: list[Result] = []
         if todo:
-            engine = _engine(request, local=local)
+            engine = _engine(request, tell, local=local)
             with screen(len(todo), several=len(sources) > 1) as shown:
                 graded = run(order, todo, engine, folder, shown)
         every = {(result.student, result.report.exercise): result for result in (*kept, *graded)}
@@ -145,14 +145,14 @@ def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
     return ros.name
 
 
-def _engine(request: Request, *, local: bool) -> Engine:
+def _engine(request: Request, tell: Callable[[str], None], *, local: bool) -> Engine:
     if local:
         from grader.classroom.local import LocalEngine, default_jobs
 
         return LocalEngine(request.jobs or default_jobs())
     from grader.classroom.dask_engine import DaskEngine
 
-    return DaskEngine(request.engine.removeprefix(DASK), request.jobs)
+    return DaskEngine(request.engine.removeprefix(DASK), request.jobs, tell)
 
 
 def _reported(kept: Sequence[Result], todo: Sequence[Todo]) -> str:

@@ -17,6 +17,8 @@ from grader.common import xdg
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+MARK = ".grader-results"
+"""The name of the file with the mark, which is also the lock of the folder."""
 _BYTES = 16
 
 
@@ -32,8 +34,12 @@ def mark(file: Path) -> None:
             opened.write(f"{made}\n")
 
 
-def is_marked(file: Path) -> bool:
-    """Return whether the file contains a mark of this user. For a link, the result is False."""
+def has_results(folder: Path) -> bool:
+    """Return whether this user has created the folder with `grader grade`. For a link to its mark, the result is False.
+
+    A folder that cannot be read has no results.
+    """
+    file = folder / MARK
     try:
         if file.is_symlink() or not file.is_file() or file.stat().st_size != 2 * _BYTES:
             return False
@@ -49,6 +55,20 @@ def is_among(folder: Path, others: Iterable[Path]) -> bool:
     """
     place = Path(os.path.realpath(folder.parent))
     return any(place.is_relative_to(os.path.realpath(each)) for each in others)
+
+
+def is_same(one: Path, other: Path) -> bool:
+    """Return whether the two paths lead to the same file or folder. A loop of symbolic links is not an error.
+
+    If `one` is a link to `other`, the result is False: a student may have created the link to avoid being graded.
+    """
+    if os.path.islink(one):  # noqa: PTH114 - before Python 3.14, Path.is_symlink can raise an exception
+        return _without_links_above(one) == _without_links_above(other)
+    return os.path.realpath(one) == os.path.realpath(other)
+
+
+def _without_links_above(path: Path) -> Path:
+    return Path(os.path.realpath(path.absolute().parent), path.name)
 
 
 def _known() -> Path:

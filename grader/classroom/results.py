@@ -21,7 +21,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.classroom.own_folders import is_among, is_marked, mark
+from grader.classroom.own_folders import MARK, has_results, is_among, mark
 from grader.errors import DiskError, MachineError, UsageError
 from grader.report.json import from_json, to_data
 from grader.report.suspicion import ERRORS
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 REPORTS = "reports"
-_LOCK = ".grader-results"
 _PARTIAL = ".partial"
 _SAFE = re.compile(r"[^A-Za-z0-9 _@+,=-]")
 _LONGEST = 120
@@ -77,7 +76,7 @@ class Results:
     @property
     def ignores_case(self) -> bool:
         """Whether `Anna` and `anna` are one file in this folder, as on the file systems of Windows."""
-        return (self.folder / _LOCK.upper()).exists()
+        return (self.folder / MARK.upper()).exists()
 
     def load(self, student: str, exercise: str) -> Result | None:
         """Return the complete result of a submission, whatever its key is, or None if there is no complete result."""
@@ -143,8 +142,8 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             student could have created it.
         MachineError: the folder cannot be written.
     """
-    lock = folder / _LOCK
-    if os.path.lexists(folder) and is_among(folder, submissions) and (folder.is_symlink() or not is_marked(lock)):
+    lock = folder / MARK
+    if os.path.lexists(folder) and is_among(folder, submissions) and (folder.is_symlink() or not has_results(folder)):
         message = (
             f"{folder} is among the submissions, and nothing shows that you created it with `grader grade`: a student "
             "may have put forged results there. Choose another folder with --out."

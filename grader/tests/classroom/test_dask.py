@@ -16,7 +16,7 @@ from grader.classroom import dask_engine
 from grader.classroom.dask_engine import DaskEngine
 from grader.classroom.worker import Worker
 from grader.common.interpreter import interpreter
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment, grade, judged
@@ -135,6 +135,19 @@ def test_a_missing_scheduler_is_a_usage_error(monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.exhaustive
+def test_without_a_worker_the_user_is_told_how_to_start_one(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copy_solution(STEP, tmp_path / "class" / "anna")
+    monkeypatch.setattr(dask_engine, "WORKERS_S", 0.1)
+    told: list[str] = []
+    engine = DaskEngine(cluster.address, None, told.append)
+    (sentence,) = told
+    assert f"`python -I -m dask worker {cluster.address}`" in sentence
+    with pytest.raises(MachineError, match="Dask has had no worker for 0 s: start one with"):
+        graded(order_of(tmp_path / "class"), engine, tmp_path / "grades")
+
+
 def test_dask_gives_the_same_results(cluster: Cluster, undisturbed: Run, tmp_path: Path) -> None:
     for _ in range(2):
         cluster.worker()

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
+from grader.classroom import results
 from grader.classroom.content import fingerprint, read
 from grader.classroom.find_submissions import find_submissions, left_out, passed_over
 from grader.classroom.found import Found, what_to_do_with
+from grader.classroom.own_folders import MARK
 from grader.classroom.refused import Refused
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
@@ -167,6 +169,28 @@ def test_results_inside_a_submission_are_refused(tmp_path: Path) -> None:
     copy_solution(STEP, tmp_path / "exercises" / STEP)
     with pytest.raises(UsageError, match="forged results"):
         find_submissions([tmp_path], STEP, tmp_path / "grades")
+
+
+def test_results_are_not_submissions(tmp_path: Path) -> None:
+    copy_solution(STEP, tmp_path / "anna")
+    with results.opened(tmp_path / "older"):
+        pass
+    assert names(tmp_path) == [("anna", STEP, "anna")]
+    assert passed_over([tmp_path], tmp_path / "grades") == ()
+    with pytest.raises(UsageError, match=r"older contains results of `grader grade`, and not submissions"):
+        find_submissions([tmp_path / "older"], STEP, tmp_path / "grades")
+
+
+def test_forged_results_are_submissions(tmp_path: Path) -> None:
+    """Otherwise, a student could avoid being graded."""
+    with results.opened(tmp_path / "older"):
+        pass
+    (tmp_path / "ben").mkdir()
+    (tmp_path / "ben" / MARK).write_text("0" * 32)
+    (tmp_path / "carl").mkdir()
+    (tmp_path / "carl" / MARK).symlink_to(tmp_path / "older" / MARK)
+    (tmp_path / "dora").symlink_to(tmp_path / "older")
+    assert [student for student, _, _ in names(tmp_path)] == ["ben", "carl", "dora"]
 
 
 def test_an_archive_alone_in_a_students_folder_is_the_submission(tmp_path: Path) -> None:
