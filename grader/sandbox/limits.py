@@ -60,6 +60,9 @@ _OPTIONS = {
     resource.RLIMIT_CPU: "cpu",
     resource.RLIMIT_CORE: "core",
     resource.RLIMIT_SIGPENDING: "sigpending",
+    resource.RLIMIT_RTPRIO: "rtprio",
+    resource.RLIMIT_NICE: "nice",
+    resource.RLIMIT_MEMLOCK: "memlock",
 }
 """Maps resource limits to the options of prlimit(1)."""
 
@@ -100,6 +103,9 @@ def resource_limits(limits: Limits, *, in_cell: bool) -> dict[int, int]:
     }
     if in_cell:
         wanted[resource.RLIMIT_SIGPENDING] = MOST_SIGNALS
+        # Users of robots may often use real-time priorities and lock memory. A cell must neither take the processors
+        # away from the grader, nor keep the files of the machine in memory, which its limit on memory does not count.
+        wanted |= dict.fromkeys((resource.RLIMIT_RTPRIO, resource.RLIMIT_NICE, resource.RLIMIT_MEMLOCK), 0)
     return {kind: allowed(kind, value) for kind, value in wanted.items()}
 
 
