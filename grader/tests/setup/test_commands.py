@@ -83,6 +83,28 @@ def test_a_course_that_was_moved_or_updated_names_the_command_that_sets_it_up(
     assert (done.returncode, done.stdout, done.stderr) == (3, "", said)
 
 
+@pytest.mark.parametrize("name", CODES)
+@pytest.mark.parametrize("way", ["by its path", "in PATH", "through a link"])
+def test_a_python_that_was_removed_names_the_command_that_sets_the_course_up(
+    tmp_path: Path, name: str, way: str
+) -> None:
+    """After an upgrade of the system, .venv/bin/python3 can be a link to a Python that no longer exists."""
+    folder = tmp_path / "my course/.venv/bin"
+    folder.mkdir(parents=True)
+    command = Path(shutil.copy(COMMANDS / name, folder))
+    command.chmod(0o755)
+    (folder / "python3").symlink_to("/usr/bin/python3.99")
+    (tmp_path / "elsewhere").mkdir()
+    link = tmp_path / "elsewhere" / name
+    link.symlink_to(command)
+    typed = {"by its path": str(command), "in PATH": name, "through a link": str(link)}[way]
+    env = {"PATH": f"{folder}:/usr/bin:/bin"}
+    done = subprocess.run(["sh", "-c", typed.replace(" ", "\\ ")], env=env, capture_output=True, text=True, check=False)
+    again = f'Set it up again: cd "{tmp_path}/my course" && make demo'
+    said = f"{name}: the Python of the course was removed after its set-up. {again}\n"
+    assert (done.returncode, done.stdout, done.stderr) == (3, "", said)
+
+
 def run(folder: Path, name: str, customized: str) -> subprocess.CompletedProcess[str]:
     """Run `NAME status` with the code `customized` at the start of Python. Copy the command to the folder first."""
     (folder / "sitecustomize.py").write_text(customized)
