@@ -12,5 +12,5 @@ if [ "$0" = "${BASH_SOURCE-}" ]; then
     echo "setup.bash was run as a program, so this terminal is as it was before. Type: source $typed" >&2
     exit 1
 fi
-eval "$("$(CDPATH= cd -- "$(dirname -- "${BASH_SOURCE[0]}")" > /dev/null && pwd)/bin/grader" env || [ $? != 126 ] || echo \
+eval "$("$(CDPATH= builtin cd -- "$(dirname -- "${BASH_SOURCE[0]}")" > /dev/null && pwd)/bin/grader" env || [ $? != 126 ] || echo \
     "echo 'The system runs no programs from this .venv. To see the reason, type make demo in the folder of the course.' >&2")"

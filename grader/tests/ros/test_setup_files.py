@@ -1,4 +1,4 @@
-"""setup.bash and setup.zsh in the wrong shell, or run as programs."""
+"""setup.bash and setup.zsh in the wrong shell, run as programs, or sourced in a shell with unusual settings."""
 
 from __future__ import annotations
 
@@ -46,6 +46,34 @@ def test_the_line_to_type_works_as_it_stands_if_the_path_has_spaces_and_quotes(s
     line = done.stderr.rstrip("\n").partition("Type: ")[2]
     typed = subprocess.run([shell, "-c", line], capture_output=True, text=True, check=False)
     assert (typed.stdout, typed.stderr) == ("sourced\n", "")
+
+
+SETTINGS = {
+    "nothing": ":",
+    "exits at errors": "set -eu",
+    "no patterns": "set -f",
+    "separates by colons": "IFS=:",
+    "a cd that does something else": "cd() { echo changed; }",
+    "a CDPATH": "export CDPATH=/:/usr",
+    "a pwd that does something else": "alias pwd='echo here'",
+}
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh"])
+@pytest.mark.parametrize("setting", SETTINGS.values(), ids=SETTINGS)
+def test_settings_of_the_shell_do_not_matter(shell: str, setting: str, tmp_path: Path) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip("zsh is not installed")
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/grader").write_text("#!/bin/sh\necho echo sourced\n")
+    (tmp_path / "bin/grader").chmod(0o755)
+    shutil.copy(FOLDER / f"setup.{shell}", tmp_path)
+    (tmp_path / "elsewhere").mkdir()
+    lines = f"{setting}\nsource ../setup.{shell}\n"
+    done = subprocess.run(
+        [shell, "-s"], input=lines, cwd=tmp_path / "elsewhere", capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "sourced\n", "")
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh"])
