@@ -68,11 +68,9 @@ def test_settings_of_the_shell_do_not_matter(shell: str, setting: str, tmp_path:
     (tmp_path / "bin/grader").write_text("#!/bin/sh\necho echo sourced\n")
     (tmp_path / "bin/grader").chmod(0o755)
     shutil.copy(FOLDER / f"setup.{shell}", tmp_path)
-    (tmp_path / "elsewhere").mkdir()
+    (elsewhere := tmp_path / "elsewhere").mkdir()
     lines = f"{setting}\nsource ../setup.{shell}\n"
-    done = subprocess.run(
-        [shell, "-s"], input=lines, cwd=tmp_path / "elsewhere", capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([shell, "-s"], input=lines, cwd=elsewhere, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "sourced\n", "")
 
 
