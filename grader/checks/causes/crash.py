@@ -25,6 +25,11 @@ PACKAGES = ("site-packages", "dist-packages")
 """Folders of installed modules. A module next to setup.py is installed directly into one of these folders."""
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
+MOST_LINE = 2000
+"""The maximum length of the line with an exception (characters). The rest of a longer line is ignored: with a message
+of 200,000 characters, the patterns that look for causes would take longer than the reader may."""
+MOST_NAME = 100
+"""The maximum length of the name of an exception (characters)."""
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
 """Matches a path, a suggestion or a list of types at the end of an exception message. These parts are removed, because
 they may differ between machines."""
@@ -183,12 +188,13 @@ def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
             own = _own_file(frame["file"], files)
             places += [] if own is None else [Where(own, int(frame["line"]))]
         elif line and not line[0].isspace():
-            error = ERROR.fullmatch(line)
+            error = ERROR.fullmatch(line[:MOST_LINE])
             if error is None:
                 return None
             message = GUESS.sub("", error["message"] or "").strip()
             where = places.pop() if places else None
-            return Crash(error["type"].rpartition(".")[2], message, where, tuple(reversed(places)))
+            kind = error["type"].rpartition(".")[2][:MOST_NAME]
+            return Crash(kind, message, where, tuple(reversed(places)))
     return None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -115,6 +116,9 @@ COMMA_FOR_DOT = (
     ),
 )
 """Tuples (pattern of an unreadable line, cause) for a comma in place of a dot."""
+MOST_LINE, MOST_GAPS = 1000, 20
+"""The maximum length of a line that is examined (characters), and the maximum number of places in it where a comma is
+tried. With a longer line, such as an array without commas, this would take longer than the reader may."""
 CONFLICT = r"^(<<<<<<<|>>>>>>>)"
 MIDDLE = "======="
 """The line that Git writes between two conflicting versions. In a docstring, the same line can underline a heading."""
@@ -201,16 +205,20 @@ def _other_sign(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
 def _no_comma(file: str, unreadable: Unreadable, data: bytes) -> Cause | None:
     """Return the cause if Python can read the line after one comma is inserted between two values, else None."""
     line, place = _line(unreadable, data), Where(file, unreadable.line)
-    for gap in GAP.finditer(line):
+    inside = (gap for gap in GAP.finditer(line) if _opens(line[: gap.end()]))
+    for gap in islice(inside, MOST_GAPS):
         before = line[: gap.end()]
-        if sum(map(before.count, "([{")) <= sum(map(before.count, ")]}")):
-            continue
         edits = at(place, line, f"{before},{line[gap.end() :]}")
         changed = applied({file: data}, edits)
         if changed is not None and _reads_further(file, changed[file], unreadable):
             text = f"A comma is missing between {shorten(gap['left'])} and {shorten(gap['right'])}."
             return Cause("comma-missing", text, place).fixed_by(edits)
     return None
+
+
+def _opens(text: str) -> bool:
+    """Return whether more brackets are opened than closed in the text."""
+    return sum(map(text.count, "([{")) > sum(map(text.count, ")]}"))
 
 
 def _reads_further(file: str, data: bytes, unreadable: Unreadable) -> bool:
@@ -242,9 +250,10 @@ def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -
 
 
 def _line(unreadable: Unreadable, data: bytes) -> str:
-    """Return the line that Python's error message refers to, or an empty string."""
+    """Return the line that Python's error message refers to, or "" if there is no such line or it is too long."""
     lines = data.decode("utf-8", "replace").splitlines()
-    return lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
+    line = lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
+    return line if len(line) <= MOST_LINE else ""
 
 
 def unreadable_observed(file: str, unreadable: Unreadable) -> str:

@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.crash import MEANINGS, START, Crash, crash_of, end_observed, ended_early, read_traceback
+from grader.checks.causes.crash import (
+    MEANINGS,
+    MOST_LINE,
+    MOST_NAME,
+    START,
+    Crash,
+    crash_of,
+    end_observed,
+    ended_early,
+    read_traceback,
+)
+from grader.checks.causes.why_crashed import why_crashed
 from grader.submission.where import Where
 from grader.tests.checks.made import NODE_FILE, evidence, recording
 from grader.tests.checks.shapes import TRACEBACK
@@ -158,6 +169,17 @@ def test_a_message_goes_as_far_as_its_first_line_and_without_pythons_guesses() -
     crash = read_traceback(traceback("AttributeError: no 'x'. Did you mean: 'y'?\n  more\n"), FILES)
     assert crash is not None
     assert crash.message == "no 'x'"
+
+
+@pytest.mark.parametrize(
+    "error", ["ValueError: " + "A" * 300_000, "TypeError: " + "a." * 100_000 + "() missing", "E" * 300_000]
+)
+def test_a_long_message_takes_no_time(error: str) -> None:
+    given = ended(stderr=traceback(error))
+    crash = crash_of(given)
+    assert crash is not None
+    assert (len(crash.error) <= MOST_NAME, len(crash.message) <= MOST_LINE) == (True, True)
+    assert why_crashed(given, crash).diagnosis == "crash"
 
 
 def test_the_file_is_the_one_whose_whole_path_fits() -> None:

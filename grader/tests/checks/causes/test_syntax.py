@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.syntax import unreadable_finding
-from grader.submission.code import Unreadable, read_module
+from grader.checks.causes.syntax import MOST_GAPS, unreadable_finding
+from grader.submission.code import Module, Unreadable, read_module
 from grader.tests.checks.made import NODE_FILE, evidence, finding, submission
 
 WORDS = {
@@ -91,6 +91,22 @@ def test_a_missing_comma_is_named_if_python_can_read_the_line_with_it(line: str,
     assert ("A comma is missing between" in found.cause) == (between is not None)
     assert ("The mistake is on this line. Compare it with" in found.cause) == (between is None)
     assert between is None or between in found.cause
+
+
+@pytest.mark.parametrize(
+    "line", ["f(" + "a " * 180_000, "x = 'a' " * 40_000, "def " + " " * 350_000 + "x", "f(" + "1 " * 300]
+)
+def test_a_long_line_takes_no_time(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[bytes] = []
+
+    def counted(file: str, data: bytes) -> Module:
+        read.append(data)
+        return read_module(file, data)
+
+    monkeypatch.setattr("grader.checks.causes.syntax.read_module", counted)
+    found = unreadable_finding("a.py", Unreadable("invalid syntax", 1), line.encode())
+    assert found.diagnosis == "syntax-error"
+    assert len(read) <= MOST_GAPS + 5
 
 
 @pytest.mark.parametrize(
