@@ -27,7 +27,7 @@ from grader.grading.turns import folder as turns_folder
 from grader.report.report import report_of
 from grader.ros import underlay
 from grader.ros.installation import find_ros
-from grader.sandbox.limits import require_memory
+from grader.sandbox.limits import require_memory, require_processes
 from grader.trial.ahead import Ahead
 from grader.trial.trial import Plan, Trial
 
@@ -174,6 +174,7 @@ class _Grading:
         """Build the submission and run its trials. An error is stored as the `fault` of the evidence."""
         try:
             require_memory()
+            require_processes()
             self.ros = find_ros()
             with self.stopwatch.stage("interfaces"):
                 ros = self.ros = underlay.with_turtlesim(self.ros, self.tell)

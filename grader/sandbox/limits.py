@@ -5,9 +5,12 @@ Resource limits (setrlimit(2)) apply to each process. usage.py and control_group
 
 from __future__ import annotations
 
+import os
 import resource
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError
@@ -25,6 +28,10 @@ LEAST_MEMORY = 2048 * MIB
 """The address space that the machine must allow each program to use (bytes). With less, a node or a test may fail
 because of the machine."""
 RAISE_MEMORY = "ulimit -v unlimited"
+LEAST_PROCESSES = 128
+"""The number of processes and threads that a grading may need at the same time, beside the user's other processes. In
+measurements, a check of step 07 needed 116, and one of step 03 needed 49."""
+RAISE_PROCESSES = f"ulimit -u {32 * LEAST_PROCESSES}"
 MOST_OTHERS = 4096
 """Without cells, this number is added to the limit on processes, because the user's other processes also count."""
 
@@ -80,6 +87,36 @@ def require_memory() -> None:
             f"{LEAST_MEMORY // MIB} MiB: type `{RAISE_MEMORY}`, or use a terminal without this limit."
         )
         raise MachineError(message)
+
+
+def require_processes() -> None:
+    """Check that this user may start enough processes and threads. The kernel does not limit those of root.
+
+    Raises:
+        MachineError: a limit on the processes and threads of the user, such as `ulimit -u`, is too low.
+    """
+    most = resource.getrlimit(resource.RLIMIT_NPROC)[0]
+    # Such a high limit is usually not reached, and counting the threads of all processes takes a while.
+    if os.geteuid() == 0 or most == resource.RLIM_INFINITY or most >= 32 * LEAST_PROCESSES:
+        return
+    running = _threads_of_user()
+    if most - running < LEAST_PROCESSES:
+        message = (
+            f"This user may run at most {most} processes and threads here, and {running} are already running. A "
+            f"grading needs up to {LEAST_PROCESSES} more: type `{RAISE_PROCESSES}`, or use a terminal without this "
+            "limit."
+        )
+        raise MachineError(message)
+
+
+def _threads_of_user() -> int:
+    """Return the number of threads of all processes of this user that are visible in /proc."""
+    threads = 0
+    for process in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            if process.stat().st_uid == os.geteuid():
+                threads += sum(1 for _ in (process / "task").iterdir())
+    return threads
 
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:

@@ -6,7 +6,7 @@ import os
 import resource
 
 from grader.errors import MachineError
-from grader.sandbox.limits import LEAST_MEMORY, MIB, RAISE_MEMORY, require_memory
+from grader.sandbox.limits import LEAST_MEMORY, MIB, RAISE_MEMORY, RAISE_PROCESSES, require_memory
 from grader.trial.node_process import PIPE, enlarge
 from grader.trial.open_files import LEAST as LEAST_FILES
 
@@ -27,7 +27,7 @@ def shares() -> tuple[str, str]:
     if files < LEAST_FILES:
         return observed, f"ulimit -n {4 * LEAST_FILES}"
     if not unlimited and processes < LEAST_PROCESSES:
-        return observed, f"ulimit -u {4 * LEAST_PROCESSES}"
+        return observed, RAISE_PROCESSES
     try:
         require_memory()
     except MachineError:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.sandbox import limits as of_limits
 from grader.sandbox import process
 from grader.sandbox.limits import MIB, Limits, limited
 from grader.tests.case import ROOT
@@ -54,6 +55,24 @@ def test_too_little_memory_for_a_program_is_the_machines_fault() -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert "MachineError: Each program may use at most 1500 MiB of address space" in done.stderr
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_too_few_processes_for_a_user_are_the_machines_fault() -> None:
+    """Otherwise, a thread that the system refuses to start looks like a mistake of the node."""
+    code = (
+        "import os, threading, time\nfrom grader.sandbox.limits import *\nos.geteuid() or os.setuid(54321)\n"
+        "for _ in range(3): threading.Thread(target=time.sleep, args=(600,), daemon=True).start()\nrequire_processes()"
+    )
+
+    def said(limit: int) -> str:
+        command = ["prlimit", f"--nproc={limit}:", "--", sys.executable, "-c", code]
+        return subprocess.run(command, capture_output=True, text=True, check=False).stderr
+
+    mine = 0 if os.geteuid() == 0 else of_limits._threads_of_user()
+    assert f"This user may run at most {mine + 130} processes and threads here, and" in (low := said(mine + 130))
+    assert int(low.rpartition(", and ")[2].split()[0]) >= mine + 4
+    assert "more: type `ulimit -u 4096`" in low
+    assert said(4096) == ""
 
 
 @pytest.mark.parametrize(
