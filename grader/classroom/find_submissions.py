@@ -17,6 +17,7 @@ import os
 import re
 import stat
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +31,7 @@ from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.submission.search import PACKAGE_FILES
-from grader.submission.tree import shown, sort_key
+from grader.submission.tree import MAX_ENTRIES, shown, sort_key
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -250,16 +251,17 @@ def misnamed(student: str, path: Path) -> Iterator[Found]:
     """Yield the entries of a student's folder that resemble the folder of an exercise, for example by their names.
 
     These entries are not graded. Examples are a folder with capital letters in its name, an archive, and a symbolic
-    link. An entry is not yielded if the folder of its exercise also exists.
+    link. An entry is not yielded if the folder of its exercise also exists. Of a folder with too many entries to be a
+    submission, no entry is yielded: the other students would have to wait.
     """
-    present = _assignments(path)
+    present, known = _assignments(path), tuple(catalogue())
     try:
-        entries = _entries(path)
-    except UsageError:
+        entries = sorted(islice(path.iterdir(), MAX_ENTRIES + 1), key=lambda each: sort_key(each.name))
+    except OSError:
         return  # the error is reported when the folder is read
-    for entry in entries:
+    for entry in entries if len(entries) <= MAX_ENTRIES else ():
         name = re.sub(r"[^a-z0-9]+", "-", entry.name.lower())
-        exercise = next((each for each in catalogue() if name.startswith(each)), None)
+        exercise = next((each for each in known if name.startswith(each)), None)
         if exercise is not None and exercise not in present:
             where = f"{shown(student)}/{shown(entry.name)}"
             todo = "Replace the symbolic link with the folder." if os.path.islink(entry) else "Rename or unpack it."

@@ -15,6 +15,7 @@ from grader.classroom.found import Found, what_to_do_with
 from grader.classroom.own_folders import MARK
 from grader.classroom.refused import Refused
 from grader.errors import UsageError
+from grader.exercise.model import catalogue
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
 
@@ -241,6 +242,30 @@ def test_an_entry_that_is_almost_named_like_an_exercise_is_reported(tmp_path: Pa
     ]
     assert found[-1].refused is not None
     assert "erik/03-Circle-Publisher must be a folder with the name 03-circle-publisher" in found[-1].refused.reason
+
+
+def test_a_folder_with_many_entries_does_not_make_the_others_wait(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[None] = []
+
+    def counted() -> dict[str, Path]:
+        asked.append(None)
+        return catalogue()
+
+    monkeypatch.setattr("grader.classroom.find_submissions.catalogue", counted)
+    monkeypatch.setattr("grader.classroom.find_submissions.MAX_ENTRIES", 60)
+    for student, entries in (("anna", 50), ("mallory", 70)):
+        (tmp_path / student / STEP).mkdir(parents=True)
+        for number in range(entries):
+            (tmp_path / student / f"02-discover-topics-{number}").touch()
+    found = find_submissions([tmp_path], None, tmp_path / "out")
+    assert {(each.student, each.exercise, bool(each.refused)) for each in found} == {
+        ("anna", "02-discover-topics", True),
+        ("anna", STEP, False),
+        ("mallory", STEP, False),
+    }
+    assert len(asked) < 20  # the catalogue is read from the disk
 
 
 def test_what_nbgrader_does_not_see_is_listed(tmp_path: Path) -> None:
