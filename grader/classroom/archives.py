@@ -197,9 +197,14 @@ def _write_all(members: Iterable[Member], folder: Path) -> None:
 
 
 def _write(member: Member, folder: Path) -> None:
-    """Write a file, or make a folder. As with unzip and tar, a file of the same name is replaced."""
+    """Write a file, or make a folder or a link. As with unzip and tar, a file of the same name is replaced."""
     target = folder.joinpath(*member.parts)
     try:
+        if member.link:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.unlink(missing_ok=True)
+            target.symlink_to(member.link)
+            return
         (target if member.content is None else target.parent).mkdir(parents=True, exist_ok=True)
         if member.content is not None:
             target.write_bytes(member.content)

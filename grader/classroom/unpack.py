@@ -67,11 +67,23 @@ class LargeArchiveError(NotUnpackedError):
 
 @dataclass(frozen=True)
 class Member:
-    """A file in an archive, or a folder if `content` is None. `parts` are the names in the path of the member."""
+    """A file in an archive, or a folder if `content` is None. `parts` are the names in the path of the member.
+
+    If `link` is not empty, the member is a symbolic link with this target. No other member is below it.
+    """
 
     parts: tuple[str, ...]
     content: bytes | None = None
     executable: bool = False
+    link: str = ""
+
+
+@dataclass(frozen=True)
+class _Link:
+    """A link in an archive: the path in the archive to which it leads, and the target of a symbolic link as it is."""
+
+    inside: str
+    symbolic: str = ""
 
 
 class Capped(io.RawIOBase):
@@ -160,26 +172,33 @@ def not_opened(error: Exception, name: str) -> NotUnpackedError:
 def _members(file: IO[bytes]) -> Iterator[Member]:
     left = MOST_BYTES
     files: dict[tuple[str, ...], Member] = {}
-    links: dict[tuple[str, ...], str] = {}
+    links: dict[tuple[str, ...], _Link] = {}
+    folders: set[tuple[str, ...]] = set()
     for number, (name, mode, content) in enumerate(_zip(file) if zipfile.is_zipfile(file) else _tar(file), 1):
         if number > MOST_ENTRIES:
             message = f"contains more than {MOST_ENTRIES} entries"
             raise LargeArchiveError(message)
         parts = _parts(name)
         links.pop(parts, None)
-        if isinstance(content, str):
+        folders.update(parts[:end] for end in range(1, len(parts)))
+        if isinstance(content, _Link):
             links[parts] = content
             continue
         data = None if content is None else _content(content, left)
         left -= len(data or b"")
         member = Member(parts, data, executable=bool(mode & stat.S_IXUSR))
-        if data is not None:
+        if data is None:
+            folders.add(parts)
+        else:
             files[parts] = member
         yield member
-    # In a folder, a link to a file of the same package counts as this file.
-    for parts, target in links.items():
-        found = _behind(target, files, links)
+    # In a folder, a link to a file of the same package counts as this file. Any other link is judged as in a folder.
+    for parts, link in links.items():
+        found = _behind(link.inside, files, links)
         if found is None:
+            # No member is below a link, since it would be written to the place where the link leads.
+            if link.symbolic and parts not in folders:
+                yield Member(parts, link=link.symbolic)
             continue
         left -= len(found.content or b"")
         if left < 0:
@@ -188,14 +207,14 @@ def _members(file: IO[bytes]) -> Iterator[Member]:
 
 
 def _behind(
-    target: str, files: Mapping[tuple[str, ...], Member], links: Mapping[tuple[str, ...], str]
+    target: str, files: Mapping[tuple[str, ...], Member], links: Mapping[tuple[str, ...], _Link]
 ) -> Member | None:
     """Return the file in the archive that a link leads to, perhaps through other links, or None."""
     for _ in range(MOST_LINKS):
         parts = PurePosixPath(posixpath.normpath(target)).parts
         if parts not in links:
             return files.get(parts)
-        target = links[parts]
+        target = links[parts].inside
     return None
 
 
@@ -208,10 +227,10 @@ def _content(content: IO[bytes], most: int) -> bytes:
     return bytes(data)
 
 
-def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | str | None]]:
+def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | _Link | None]]:
     """Yield the name, mode and content of each file, folder and link.
 
-    For a folder, the content is None. For a link, it is the path of the target in the archive. Devices are skipped.
+    For a folder, the content is None. Devices are skipped.
     """
     with zipfile.ZipFile(file) as packed:
         for info in packed.infolist():
@@ -226,17 +245,16 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | str | None]]:
                     raise ArchiveFormatError(message)
                 with packed.open(info) as content:
                     if stat.S_ISLNK(mode):
-                        yield name, mode, _beside(name, os.fsdecode(content.read(MOST_PATH_BYTES)))
+                        yield name, mode, _symbolic(name, os.fsdecode(content.read(MOST_PATH_BYTES)))
                     else:
                         yield name, mode, content
 
 
-def _beside(name: str, target: str) -> str:
-    """Return the path in the archive to which a symbolic link leads."""
-    return posixpath.join(posixpath.dirname(name), target)
+def _symbolic(name: str, target: str) -> _Link:
+    return _Link(posixpath.join(posixpath.dirname(name), target), target)
 
 
-def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | str | None]]:
+def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | _Link | None]]:
     """Yield the same values as `_zip`, but for a tar archive, with or without compression by gzip."""
     file.seek(0)
     gzipped = file.read(2) == b"\x1f\x8b"
@@ -251,9 +269,9 @@ def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | str | None]]:
             elif info.isreg():
                 yield info.name, info.mode, packed.extractfile(info)
             elif info.issym():
-                yield info.name, info.mode, _beside(info.name, info.linkname)
+                yield info.name, info.mode, _symbolic(info.name, info.linkname)
             elif info.islnk():
-                yield info.name, info.mode, info.linkname
+                yield info.name, info.mode, _Link(info.linkname)
 
 
 def _parts(name: str) -> tuple[str, ...]:

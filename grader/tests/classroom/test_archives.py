@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import io
 import os
 import platform
 import stat
@@ -21,36 +20,9 @@ from grader.classroom.archives import copied, sha256_of, stem, unpacked
 from grader.classroom.unpack import NotUnpackedError
 from grader.errors import DiskError
 from grader.submission import reader
+from grader.tests.classroom.made_archives import files, member, tar, zipped
 
 MANY = b"0" * 1024 * 1024
-
-
-def tar(file: Path, *members: tuple[tarfile.TarInfo, bytes], how: str = "w:gz") -> Path:
-    with tarfile.open(file, how) as archive:  # type: ignore[call-overload]
-        for info, content in members:
-            info.size = len(content)
-            archive.addfile(info, io.BytesIO(content))
-    return file
-
-
-def member(name: str, kind: bytes = tarfile.REGTYPE, link: str = "", mode: int = 0o644) -> tarfile.TarInfo:
-    info = tarfile.TarInfo(name)
-    info.type, info.linkname, info.mode = kind, link, mode
-    return info
-
-
-def zipped(file: Path, *members: tuple[str | zipfile.ZipInfo, bytes]) -> Path:
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in members:
-            archive.writestr(name, content)
-    return file
-
-
-def files(archive: Path) -> dict[str, bytes]:
-    with unpacked(archive) as folder:
-        found = {str(path.relative_to(folder)): path for path in folder.rglob("*") if not path.is_dir()}
-        assert all(stat.S_ISREG(path.lstat().st_mode) for path in found.values())
-        return {name: path.read_bytes() for name, path in found.items()}
 
 
 def why_not(archive: Path) -> str:
@@ -95,51 +67,6 @@ def test_a_path_that_leads_out_is_refused(tmp_path: Path, name: str) -> None:
     if "\\" not in name:
         assert 'path with ".."' in why_not(tar(tmp_path / "a.tar.gz", (member(name), b"1")))
     assert not (tmp_path / "out").exists()
-
-
-def test_a_link_to_a_file_of_the_archive_is_this_file(tmp_path: Path) -> None:
-    """As in a folder. Students link a file to another place of their workspace."""
-    link = zipfile.ZipInfo("pkg/b")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    assert files(zipped(tmp_path / "a.zip", (link, b"../a"), ("a", b"1"))) == {"a": b"1", "pkg/b": b"1"}
-    with tarfile.open(tmp_path / "a.tar", "w") as archive:
-        archive.addfile(member("pkg/c", tarfile.SYMTYPE, "./b"))
-        archive.addfile(member("pkg/b", tarfile.SYMTYPE, "../a"))
-        archive.addfile(member("pkg/loop", tarfile.SYMTYPE, "loop"))
-        archive.addfile(member("pkg/hard", tarfile.LNKTYPE, "a"))
-        archive.addfile(member("pkg/twice", tarfile.SYMTYPE, "../a"))
-        for name in ("a", "pkg/twice"):
-            info = member(name)
-            info.size = 1
-            archive.addfile(info, io.BytesIO(name[-1:].encode()))
-    linked = dict.fromkeys(("a", "pkg/b", "pkg/c", "pkg/hard"), b"a")
-    assert files(tmp_path / "a.tar") == {**linked, "pkg/twice": b"e"}
-
-
-def test_links_do_not_exceed_the_size_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unpack, "MOST_BYTES", 10)
-    link = zipfile.ZipInfo("b")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    with pytest.raises(unpack.LargeArchiveError):
-        files(zipped(tmp_path / "a.zip", (link, b"a"), ("a", b"123456")))
-
-
-def test_links_and_devices_are_skipped_and_nothing_is_written_through_them(tmp_path: Path) -> None:
-    outside = tmp_path / "outside"
-    outside.mkdir()
-    archive = tar(
-        tmp_path / "a.tar.gz",
-        (member("way", tarfile.SYMTYPE, str(outside)), b""),
-        (member("way/file"), b"1"),
-        (member("hard", tarfile.LNKTYPE, "/etc/passwd"), b""),
-        (member("null", tarfile.CHRTYPE), b""),
-        (member("pipe", tarfile.FIFOTYPE), b""),
-    )
-    assert files(archive) == {"way/file": b"1"}
-    assert list(outside.iterdir()) == []
-    link = zipfile.ZipInfo("link")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    assert files(zipped(tmp_path / "a.zip", (link, b"/etc/passwd"), ("a", b"1"))) == {"a": b"1"}
 
 
 def test_a_zip_bomb_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
