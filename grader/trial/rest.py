@@ -132,12 +132,13 @@ class Threads:
         """Return the CPU time used so far (ns), which has grown if a thread has run and fallen asleep since.
 
         For the threads of this process, the result has the CPU time of each observed thread, and otherwise the total
-        of all threads of the process. If a thread or the process has exited, the result is ().
+        of all threads of the process. If a thread or the process has exited, or if the system does not measure CPU
+        times of other processes, the result differs from all other results.
         """
         try:
             return tuple([time.clock_gettime_ns(clock) for clock in self._clocks])
         except OSError:
-            return ()
+            return (-time.monotonic_ns(),)
 
     def asleep(self) -> bool:
         """Return whether every thread is sleeping. If a thread has just exited, return False.
