@@ -221,4 +221,5 @@ def _report(file: Path) -> bytes:
         os.close(descriptor)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -213,4 +213,5 @@ def _run_program(script: Path, arguments: list[str]) -> None:
     exec(compile(script.read_bytes(), str(script), "exec"), module.__dict__)
 
 
-main()
+if __name__ == "__main__":
+    main()

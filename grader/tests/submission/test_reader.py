@@ -207,6 +207,12 @@ def test_nothing_but_plain_data_is_taken(value: object) -> None:
         read(lambda: value)
 
 
+def test_a_result_cannot_run_a_script_of_ours() -> None:
+    # A hostile result can name any module of the grader, and the grader imports it to find the class.
+    files = [file for file in (ROOT / "grader").rglob("*.py") if "tests" not in file.parts]
+    assert [file for file in files if file.read_text("utf-8").endswith("\nmain()\n")] == []
+
+
 SLOW_NUMPY = """
 import numpy_test
 numpy_test.begun.set()
