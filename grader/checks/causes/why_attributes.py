@@ -170,7 +170,7 @@ def _of_ros_1(name: str) -> Cause:
 
 def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | None:
     known = [each for each in known if each != name]
-    plain = {each.lower(): each for each in known}
+    plain = {key: each for each in known for key in (each.lower().removeprefix("status_"), each.lower())}
     guess = plain.get(name.lower()) or nearest(
         name, [each for each in known if abs(len(each) - len(name)) <= MOST_LETTERS]
     )

@@ -6,7 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.awaiting import awaits_in_group, never_awaited
 from grader.checks.causes.callback_code import functions_in_callbacks, inside
+from grader.checks.causes.unset_state import unset_state
 from grader.checks.causes.waiting import clients_of, has_threads, waits_in_callback
 from grader.checks.causes.why_other_object import NEED_THE_NODE
 from grader.submission.constants import dotted
@@ -28,7 +30,9 @@ WAKES = ("create_timer", "create_subscription", "create_service", "create_client
 
 def why_blocked(evidence: Evidence) -> Cause | None:
     """Return the cause if a callback never ends, or a call before rclpy.spin waits for a response, else None."""
-    return waits_in_callback(evidence) or idle_loop(evidence) or _call_before_spin(evidence)
+    coroutine = awaits_in_group(evidence) or never_awaited(evidence)
+    blocked = waits_in_callback(evidence) or coroutine or idle_loop(evidence) or _call_before_spin(evidence)
+    return blocked or unset_state(evidence)
 
 
 def idle_loop(evidence: Evidence) -> Cause | None:

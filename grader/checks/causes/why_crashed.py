@@ -22,6 +22,7 @@ from grader.checks.causes.why_main import why_main
 from grader.checks.causes.why_names import why_no_name
 from grader.checks.causes.why_no_file import why_no_file
 from grader.checks.causes.why_none import why_none
+from grader.checks.causes.why_parameter_calls import why_parameter_call
 from grader.checks.causes.why_passed import why_passed
 from grader.checks.causes.why_rate import callbacks_of
 from grader.checks.causes.why_rclpy_refused import why_rclpy_refused
@@ -211,7 +212,9 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
     special = trailing_comma(scene) or why_main(scene) or why_response(scene) or why_interface(scene)
-    special = special or why_rclpy_refused(scene) or why_wrong_object(scene) or why_passed(scene)
+    special = (
+        special or why_parameter_call(scene) or why_rclpy_refused(scene) or why_wrong_object(scene) or why_passed(scene)
+    )
     cause = special or (explain(scene) if explain is not None else None) or _why_exit(scene)
     return cause or Cause("crash", crash.meaning)
 

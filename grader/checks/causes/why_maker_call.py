@@ -28,6 +28,8 @@ def why_maker_call(scene: CrashScene) -> Cause | None:
     text = scene.crash.message
     if NO_PERIOD in text and scene.calls_on_line("create_timer"):
         return Cause("crash", "The first argument of create_timer is the period, a number of seconds.")
+    if "incompatible constructor arguments" in text and (swapped := _name_last(scene)) is not None:
+        return swapped
     if NOT_CALLABLE in text:
         return _callback_in_quotes(scene)
     if (few := NO_ARGUMENT.search(text)) is not None:
@@ -45,6 +47,15 @@ def why_maker_call(scene: CrashScene) -> Cause | None:
     if name in ros_names.NODE and any(dotted(call.func) == f"Node.{name}" for call in scene.calls_on_line(name)):
         text = f"This line calls {name} on the class Node. Inside a method of the node, write self.{name}."
         return Cause("class-for-object", text)
+    return None
+
+
+def _name_last(scene: CrashScene) -> Cause | None:
+    """Return the cause if create_service got the callback before the name of the service, else None."""
+    for call in scene.calls_on_line("create_service"):
+        if len(call.args) > 2 and isinstance(getattr(call.args[2], "value", None), str):
+            text = "create_service takes the type, then the name of the service, then the callback."
+            return Cause("arguments-swapped", text, scene.at(call))
     return None
 
 

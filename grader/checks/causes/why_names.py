@@ -72,6 +72,8 @@ def why_no_name(scene: CrashScene) -> Cause | None:
 def _unknown(scene: CrashScene, name: str) -> Cause:
     if known := [each for each in bindings(scene, name) if not each.in_brackets and each.line != scene.line]:
         return Cause("name-undefined", without_value(known[0]))
+    if name in ("rospy", "actionlib"):
+        return Cause("ros-1-module", f"{name} belongs to ROS 1. The Python library of ROS 2 is rclpy.")
     if name[:1].isupper():
         return Cause("name-undefined", "Nothing defines this name before this line, and nothing imports it.")
     parameter = as_parameter(scene, name)

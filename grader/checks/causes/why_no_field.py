@@ -13,9 +13,12 @@ OF_HANDLES = ("cancel_goal", "get_result")
 
 
 def why_no_field(owner: str, name: str) -> Cause | None:
-    """Return the cause if `owner` is such a part, or an ActionClient that lacks a method of goal handles, else None."""
+    """Return the cause if `owner` is such a part, an action client or a goal handle, else None."""
     if owner == "ActionClient" and name.startswith(OF_HANDLES):
         return Cause("attribute-missing", f"{name} is a method of the goal handle, not of the client.")
+    if (owner, name) == ("ClientGoalHandle", "add_done_callback"):
+        text = "add_done_callback is a method of a future, such as the one that get_result_async of the handle returns."
+        return Cause("attribute-missing", text)
     part = PART.fullmatch(owner)
     if part is None:
         return None

@@ -20,6 +20,7 @@ CARET = re.compile(r"unsupported operand type\(s\) for \^=?: |ufunc 'bitwise_xor
 MULTIPLIED = "can't multiply sequence by non-int of type 'float'"
 COMPARED = re.compile(r"not supported between instances of '(\w+)' and '(\w+)'")
 UNPACKED = re.compile(r"cannot unpack non-iterable (?P<type>\w+) object")
+JOINED = re.compile(r"sequence item \d+: expected str instance, (?P<type>\w+_(?:Response|Request)) found")
 QUOTES = "'\""
 NUMBERS = frozenset({"int", "float", "float64"})
 
@@ -28,6 +29,9 @@ def why_operands(scene: CrashScene) -> Cause | None:
     """Return the cause of a TypeError about an operator whose two operands do not fit together, else None."""
     if CARET.search(scene.crash.message):
         return Cause("caret-for-power", "In Python, ^ is not a power. Write x**2 for the square of x.")
+    if (item := JOINED.search(scene.crash.message)) is not None:
+        text = f"join needs strings, but an item of this list is an object of the type {shorten(item['type'])}."
+        return Cause("crash", f"{text} A string may be in one of its fields, such as name.")
     found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
     if found is None:
         return _other_values(scene, scene.crash.message)

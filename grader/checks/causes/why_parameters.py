@@ -25,7 +25,7 @@ PASSED = {
     "add_on_set_parameters_callback": "The callback for parameters gets the list of new parameters.",
 }
 """Maps a method that takes a callback to a sentence about the arguments of the callback."""
-IN_GENERAL = "A timer passes no argument; a subscription passes the message."
+IN_GENERAL = "A timer passes no argument, a subscription passes the message, and a future passes itself."
 
 
 def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:

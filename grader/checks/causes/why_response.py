@@ -76,6 +76,8 @@ def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
     if any(isinstance(value, ast.Name) and value.id == request for value in returned):
         return f"the request ({shorten(request)})"
     for value in returned:
+        if isinstance(value, ast.Call) and (dotted(value.func) or "").endswith("call_async"):
+            return "the future of another request"
         if type(value) in DISPLAYS:
             return DISPLAYS[type(value)]
     return next((repr(value.value) for value in returned if isinstance(value, ast.Constant)), "")
@@ -84,7 +86,10 @@ def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
 def _class_returned(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
     """Return a phrase for the class of the response if each return statement returns it, else an empty string."""
     returned = [node.value for node in ast.walk(method) if isinstance(node, ast.Return)]
+    given = [node for node in ast.walk(method) if isinstance(node, ast.Assign) and len(node.targets) == 1]
+    classes = {dotted(node.targets[0]): dotted(node.value) or "" for node in given}
     names = {dotted(value) or "" if value is not None else "" for value in returned}
+    names = {classes.get(name, name) for name in names}
     name = names.pop() if len(names) == 1 else ""
     is_class = name[:1].isupper() and name.endswith(".Response") and isinstance(method.body[-1], ast.Return)
     return f"the class {shorten(name)} instead of an object" if is_class else ""

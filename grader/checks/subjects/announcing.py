@@ -21,6 +21,7 @@ from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
 from grader.evidence import activity
 from grader.evidence.targets import announcements, is_there
+from grader.submission.constants import number as number_of
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -31,6 +32,7 @@ LATE_S = 1.05
 AT_ONCE_S = 0.1
 """If a turtle appears or disappears within this time (s) after a message, the message may contain its name or not."""
 EMPTY = "At this time, there was no target. Even then, the node must publish a message with an empty string."
+OTHER_SPACE = re.compile(r"[^\S ]")
 NOT_IN_NAMES = re.compile(r"\W")
 OFTEN = 3
 """The maximum number of messages per period. A node may also publish after each change."""
@@ -77,7 +79,7 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
-        cause = Cause("timer-period", "Publish each time the timer fires.", evidence.place("create_timer"))
+        cause = _of_period(evidence, longest_s)
         if evidence.recording.end.by == "itself" and begin_s == times_s[-2]:
             observed, cause = f"{observed} {end_observed(evidence)}", why_ended(evidence)
         elif not with_targets:
@@ -90,6 +92,15 @@ def announces(evidence: Evidence, params: Announces) -> Finding:
         cause = Cause("timer-period", "Publish in the callback of one timer.", evidence.place("create_timer"))
         return failed(observed, expected, cause)
     return passed("The node announces the remaining targets.", near_edge=most.near(longest_s))
+
+
+def _of_period(evidence: Evidence, gap_s: float) -> Cause:
+    """Return the cause for a gap (s) between two messages: the period of a timer, or a call that does not publish."""
+    for timer in evidence.code.calls("create_timer"):
+        period_s = number_of(timer.argument(0, "timer_period_sec"), timer.module.names)
+        if period_s is not None and abs(period_s - gap_s) < 0.1 * gap_s:
+            return Cause("timer-period", f"The period of this timer is {period_s:g} s.", timer.where)
+    return Cause("timer-period", "Publish each time the timer fires.", evidence.place("create_timer"))
 
 
 def _has_targets(evidence: Evidence, gap_s: float, begin_s: float, most: Band) -> bool:
@@ -120,7 +131,8 @@ def _wrong_names(evidence: Evidence, message: Announcement, heard: list[Announce
     strange = [name for name in message.names if name not in around]
     known = {track.turtle for track in tracks}
     pieces = len(message.names) > 1 and "".join(message.names) in known
-    if pieces or any(name not in known and _is_of_parts(name, known) for name in strange):
+    spaced = OTHER_SPACE.search(message.text) is None
+    if pieces or not spaced or any(name not in known and _is_of_parts(name, known) for name in strange):
         text = 'The text consists of the names, separated by single spaces: " ".join(names).'
         if pieces and max(map(len, message.names)) == 1:
             text = "join puts spaces between the letters, because it got one string. It needs a list of names."

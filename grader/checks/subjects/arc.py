@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.sign_for_sum import sign_for_sum
+from grader.checks.causes.waiting import SLEEPS, waits_in_callbacks
 from grader.checks.causes.why_blocked import why_blocked
 from grader.checks.causes.why_condition import stored_before_refused
 from grader.checks.causes.why_crashed import crash_finding
@@ -112,7 +113,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     near = round_.near(fitted.rms) or size.near(fitted.radius)
     if not size.holds(fitted.radius):
         text = "The radius is linear.x divided by angular.z."
-        cause = _not_followed(evidence, params) or Cause("wrong-radius", text, where)
+        cause = _not_followed(evidence, params) or _slept(evidence) or Cause("wrong-radius", text, where)
         return failed(f"The radius of this arc is {fitted.radius:.2f} m.", expected, cause, near_edge=near)
     turns = turns_about(x, y, fitted.x, fitted.y)
     if (turns > 0.0) != (params.direction == "counter-clockwise"):
@@ -132,7 +133,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
         observed, cause = _other_angle(evidence, params, chosen, angle)
         return failed(observed, expected, cause, near_edge=near)
     if not pace.holds(speed):
-        cause = _not_followed(evidence, params) or Cause("wrong-speed", where=where)
+        cause = _not_followed(evidence, params) or _slept(evidence) or Cause("wrong-speed", where=where)
         return failed(f"The turtle drove this arc at {speed:.2f} m/s.", expected, cause, near_edge=near)
     return passed(f"The turtle drove an arc of radius {fitted.radius:.2f} m.", near_edge=near)
 
@@ -144,8 +145,11 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
         observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
         text = "The state must change after the last timer call of this arc. At which value does the counter start?"
         return observed, sign_for_sum(evidence, "drives-on") or Cause("drives-on", text, evidence.place("publish"))
-    if not too_long and params.color is not None and _always_draws(evidence) and _goes_on(evidence, chosen):
+    sides = _goes_on(evidence, chosen) if params.color is not None and _always_draws(evidence) else (False, False)
+    if not too_long and any(sides):
         text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
+        if not sides[0]:
+            text = "The pen changed before the end of this arc. Ask for the next pen when the arc is complete."
         cause = Cause("not-in-colour", text, evidence.place("publish"))
         return "A part of this arc was drawn in a different colour.", cause
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
@@ -184,6 +188,12 @@ def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
     return Cause("parameter-not-followed", text, evidence.place("get_parameter"))
 
 
+def _slept(evidence: Evidence) -> Cause | None:
+    """Return the cause if a callback of a node whose parameters are set sleeps, so commands come late, else None."""
+    sleeps = (wait.cause for wait in waits_in_callbacks(evidence) if wait.name in SLEEPS)
+    return next(sleeps, None) if set_calls(evidence) else None
+
+
 def _expected(params: Arc) -> str:
     angle = f" of {params.angle_deg:g} degrees" if params.angle_deg else ""
     speed = f" at {params.speed_m_s:g} m/s" if params.speed_m_s else ""
@@ -210,8 +220,8 @@ def _pieces(evidence: Evidence, chosen: Steps) -> int:
     return int((np.diff(np.flatnonzero(chosen[moves])) > 1).sum()) + 1
 
 
-def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
-    """Return whether the arc continues in the frame before or after the chosen steps.
+def _goes_on(evidence: Evidence, chosen: Steps) -> tuple[bool, bool]:
+    """Return whether the arc continues in the frame before the chosen steps, and whether in the frame after them.
 
     The frame belongs to the same arc if the turtle turned by the same angle per metre.
     """
@@ -220,7 +230,7 @@ def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
     off = np.abs(trajectory.turn - turn_per_m * trajectory.steps)
     same = (trajectory.steps > RESTS_M) & (off <= SAME_ARC * np.abs(turn_per_m) * trajectory.steps)
     before, after = int(ends[0]) - 1, int(ends[-1]) + 1
-    return (before >= 0 and bool(same[before])) or (after < len(same) and bool(same[after]))
+    return before >= 0 and bool(same[before]), after < len(same) and bool(same[after])
 
 
 def _always_draws(evidence: Evidence) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -32,6 +33,8 @@ FRAME_S = 0.016
 LONG = 2.0
 """A goal counts if it lasts at least this many periods. A goal that lasts for a shorter time can end between two log
 lines."""
+SLOWEST = Band.at_most(1.5)
+"""The maximum median time between two lines during a goal, in periods."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +89,12 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
             return failed(observed, expected, Cause("every-message", text, where))
         text = "Log the number in the callback of a timer while there is a goal."
         return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
+    gaps = [later.t_s - line.t_s for (line, of), (later, next_) in pairwise(told) if of is next_]
+    middle_s = float(np.median(gaps)) if gaps else params.period_s
+    if not SLOWEST.holds(middle_s / params.period_s):
+        observed = f"While the turtle turns, a line appears every {middle_s:.2g} s."
+        text = "The period of the timer whose callback logs the line is too long."
+        return failed(observed, expected, Cause("timer-period", text, evidence.place("create_timer")))
     return passed("The lines show how far the turtle still has to turn.")
 
 

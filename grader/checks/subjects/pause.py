@@ -12,6 +12,7 @@ from grader.checks.causes.why_blocked import idle_loop
 from grader.checks.causes.why_condition import field_and_string
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_not_set import compared_condition
+from grader.checks.causes.why_not_stored import not_stored, whole_request
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.path import moved_otherwise
@@ -74,7 +75,8 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
     if not within.holds(wait_s):
         observed = "The turtle did not continue." if first is None else f"The turtle continued after {wait_s:.1f} s."
         text = "The request with data=False ends the pause."
-        return failed(observed, expected, Cause("pause-never-ends", text, where), near_edge=near)
+        cause = whole_request(evidence) or Cause("pause-never-ends", text, where)
+        return failed(observed, expected, cause, near_edge=near)
     return passed("The turtle stood still and then continued.", near_edge=near)
 
 
@@ -95,13 +97,24 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
             "The commands still move the turtle during the pause. While the node is paused, publish a command with "
             "all values 0."
         )
-        known = compared_condition(evidence) or field_and_string(evidence, "data")
+        if _is_reversed(evidence, params):
+            observed += " After the next call, it stands still."
+            text = "The node does the opposite of the request: data=True must pause it, and data=False must not."
+        known = compared_condition(evidence) or field_and_string(evidence, "data") or not_stored(evidence)
         cause = known or Cause("pause-ignored", text, where)
         return failed(observed, expected, cause, near_edge=near_edge)
     observed = f"The turtle took {stop_s:.1f} s to stop after the call."
     text = "Without a new command, a turtle continues for one second. While the node is paused, publish zeros."
     cause = idle_loop(evidence) or Cause("no-stop-command", text, where)
     return failed(observed, expected, cause, near_edge=near_edge)
+
+
+def _is_reversed(evidence: Evidence, params: Pause) -> bool:
+    """Return whether the node sends only zeros after the pause, until the next call by the trial."""
+    later = (call.t_s for call in evidence.recording.calls if call.by_trial and call.t_s > params.until_s + EARLY_S)
+    until_s = min(later, default=float("inf"))
+    after = [each for each in evidence.commands if params.until_s + params.within_s < each.t_s < until_s]
+    return bool(params.goes_on and after) and not any(map(_drives, after))
 
 
 def _drives_again_s(evidence: Evidence, params: Pause) -> float | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.awaiting import awaits_in_group
 from grader.checks.causes.callback_groups import in_default_group
 from grader.checks.causes.waiting import has_threads, waits_in_callbacks
 from grader.checks.kind import Kind, NoParams
@@ -47,6 +48,8 @@ def _certain(evidence: Evidence, waits: list[Wait]) -> Finding | None:
     if first is not None:
         return failed(f"A callback {first.observed}.", EXPECTED, first.cause)
     blocked = next((wait for wait in waits if in_default_group(evidence, wait)), None)
+    if blocked is None and (awaits := awaits_in_group(evidence)) is not None:
+        return failed("A callback awaits a response.", EXPECTED, awaits)
     if blocked is None:
         return None
     return failed(f"A callback {blocked.observed}.", EXPECTED, _same_group(blocked))

@@ -112,7 +112,7 @@ def cause(line: str, error: str) -> str:
             TOO_MANY.format("stop", 1, "", 2),
         ),
         (
-            "a timer passes no argument; a subscription passes the message".capitalize(),
+            "a timer passes no argument, a subscription passes the message, and a future passes itself".capitalize(),
             "other(self.stop)",
             "self.create_timer(1.0, self.stop)",
             TOO_MANY.format("stop", 1, "", 2),
