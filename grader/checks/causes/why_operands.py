@@ -31,7 +31,7 @@ def why_operands(scene: CrashScene) -> Cause | None:
         return Cause("caret-for-power", "In Python, ^ is not a power. Write x**2 for the square of x.")
     if (item := JOINED.search(scene.crash.message)) is not None:
         text = f"join needs strings, but an item of this list is an object of the type {shorten(item['type'])}."
-        return Cause("crash", f"{text} A string may be in one of its fields, such as name.")
+        return Cause("crash", text)
     found = OPERANDS.search(scene.crash.message) or CONCATENATED.search(scene.crash.message)
     if found is None:
         return _other_values(scene, scene.crash.message)
