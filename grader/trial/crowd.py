@@ -11,6 +11,9 @@ from grader.trial.rest import GoneError
 
 STALL_S = 0.03
 """If the simulator or the node had to wait longer than this between two frames (s), arrival times are unreliable."""
+LONG_S = 0.3
+"""If a thread waited for a processor for at least this time (s), the turtle may have stopped or left its path
+meanwhile. Then the whole wait is a stall, and not only the frame in which it ended."""
 OWN_DOING = 0.5
 """If a node or the simulator used a processor for more than this share of the time, the node delayed itself, so the
 delay is not a stall. Work that the node causes in the simulator counts as work of the node. For example, the machine is
@@ -25,6 +28,9 @@ WAITED = 0.05
 """The machine is crowded if other programs use it, and the simulator and the node together wait for a processor for at
 least this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
+
+Times = dict[int, tuple[float, float]]
+"""Maps the id of a thread to the times for which it has run and waited for a processor (s)."""
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
@@ -51,9 +57,9 @@ class Stalls:
 
     def __init__(self, *pids: int) -> None:
         self._parts = [_threads(*pids), _threads(os.getpid())]
-        self._before = [(0.0, 0.0), (0.0, 0.0)]
+        self._before: list[Times] = [{}, {}]
         self._stolen_s = _stolen_s()
-        self._since_s = 0.0
+        self._since_s = self._stalled_until_s = 0.0
         self._for_node: list[tuple[float, float]] = []
         self.waited_s = 0.0
         self.look(0.0)
@@ -69,30 +75,38 @@ class Stalls:
                 threads.close()
 
     def look(self, now_s: float) -> tuple[float, float] | None:
-        """Return the period of the stall since the last call (from, to, in s), or None if there was none.
+        """Return the period of the stall that was found since the last call (from, to, in s), or None.
 
         In a stall, threads waited for a processor for more than STALL_S, or the hypervisor gave the processor to
-        another virtual machine for more than STALL_S. If the node kept a processor busy (OWN_DOING), the waits of the
-        threads do not count. A late frame alone is not a stall, because a node that keeps the simulator busy could
-        cause the delay.
+        another virtual machine for more than STALL_S. The kernel counts a wait when it ends, so the stall begins at the
+        last call or, if a thread has waited for LONG_S or longer, where this wait began. If the node kept a processor
+        busy (OWN_DOING), the waits of the threads do not count. A late frame alone is not a stall, because a node that
+        keeps the simulator busy could cause the delay.
         """
-        passed_s = max(now_s - self._since_s, 1e-3)
         now = [_times(threads) for threads in self._parts]
-        (node_s, node_waited_s), (simulator_s, simulator_waited_s) = (
-            (ran - before_ran, waited - before_waited)
-            for (ran, waited), (before_ran, before_waited) in zip(now, self._before, strict=True)
+        (node_s, node_waited_s, node_longest_s), (simulator_s, simulator_waited_s, simulator_longest_s) = (
+            _since(*pair) for pair in zip(self._before, now, strict=True)
         )
         self._before = now
         self.waited_s += node_waited_s + simulator_waited_s
+        passed_s = max(now_s - self._since_s, 1e-3)
         for_node_s = max(0.0, simulator_s - SIMULATOR * passed_s)
         if for_node_s > 0.0:
             self._for_node.append((now_s, for_node_s))
-        own_doing = max(node_s + for_node_s, simulator_s) > OWN_DOING * passed_s
+        longest_s = max(node_longest_s, simulator_longest_s)
+        if longest_s < LONG_S:
+            longest_s = 0.0
+        own_doing = max(node_s + for_node_s, simulator_s) > OWN_DOING * max(passed_s, longest_s)
         stolen_s = _stolen_s()
         owed = [stolen_s - self._stolen_s, *([] if own_doing else [node_waited_s, simulator_waited_s])]
         self._stolen_s = stolen_s
         begun_s, self._since_s = self._since_s, now_s
-        return (begun_s, now_s) if max(owed) > STALL_S else None
+        if max(owed) <= STALL_S:
+            return None
+        if not own_doing:
+            begun_s = min(begun_s, now_s - longest_s)
+        begun_s, self._stalled_until_s = max(begun_s, self._stalled_until_s), now_s
+        return begun_s, now_s
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
         """Return the CPU time (s) that the simulator spent on the node between two times."""
@@ -120,15 +134,24 @@ def _threads(*pids: int) -> GroupThreads | None:
         return None
 
 
-def _times(threads: GroupThreads | None) -> tuple[float, float]:
-    """Return the time for which all threads have run, and the time for which they waited for a processor (s)."""
+def _times(threads: GroupThreads | None) -> Times:
     if threads is None:
-        return 0.0, 0.0
+        return {}
     try:
-        counts = [run.split() for run in threads.look().runs]
+        return threads.times_s()
     except GoneError:
-        return 0.0, 0.0
-    return sum(int(ran) for ran, _, _ in counts) / 1e9, sum(int(waited) for _, waited, _ in counts) / 1e9
+        return {}
+
+
+def _since(before: Times, now: Times) -> tuple[float, float, float]:
+    """Return how long all threads ran and waited between two measurements, and the longest wait of a thread (s)."""
+    ran_s = waited_s = longest_s = 0.0
+    for tid, (ran_until_s, waited_until_s) in now.items():
+        ran_before_s, waited_before_s = before.get(tid, (0.0, 0.0))
+        ran_s += ran_until_s - ran_before_s
+        waited_s += waited_until_s - waited_before_s
+        longest_s = max(longest_s, waited_until_s - waited_before_s)
+    return ran_s, waited_s, longest_s
 
 
 def _stolen_s() -> float:

@@ -164,6 +164,10 @@ class GroupThreads:
         """Return the CPU time (s) that each thread has used, by thread id, without the threads of Fast DDS."""
         return {tid: ran_s for threads in self._each for tid, ran_s in threads.run_times_s().items()}
 
+    def times_s(self) -> dict[int, tuple[float, float]]:
+        """Return the times (s) for which each thread has run and waited for a processor, by thread id."""
+        return {tid: times for threads in self._each for tid, times in threads.times_s().items()}
+
     def waits(self) -> list[Wait]:
         """Return the reason why each thread is waiting, except for the threads of Fast DDS."""
         return [wait for threads in self._each for wait in threads.waits()]

@@ -185,6 +185,20 @@ class Threads:
                     found[tid] = int(os.pread(schedstat, 64, 0).split()[0]) / 1e9
         return found
 
+    def times_s(self) -> dict[int, tuple[float, float]]:
+        """Return the times (s) for which each thread has run and waited for a processor, by thread id.
+
+        Raises:
+            GoneError: the process has exited.
+        """
+        self._refresh()
+        found = {}
+        for tid, (_, schedstat) in self._files.items():
+            with suppress(ProcessLookupError):  # the thread has exited
+                ran, waited, _ = os.pread(schedstat, 64, 0).split()
+                found[tid] = int(ran) / 1e9, int(waited) / 1e9
+        return found
+
     def waits(self) -> list[Wait]:
         """Return the reason why each thread is waiting, except for the threads of Fast DDS.
 

@@ -19,7 +19,7 @@ from grader.trial.recording import Message
 
 if TYPE_CHECKING:
     import subprocess
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 WORK_S = 0.5
 """The CPU time that a program uses when it is told to work (s). The kernel counts in steps of 0.01 s or finer."""
@@ -134,11 +134,49 @@ def test_a_stall_is_what_the_machine_owes(counts: Counts, monkeypatch: pytest.Mo
 def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> closing[Stalls]:
     """Return a Stalls object that will find these counts when it next measures."""
     node, simulator, stolen_s = counts
-    times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
-    stolen = iter([0.0, 0.0, stolen_s])
+    return measured([({1: node}, {2: simulator}, stolen_s)], monkeypatch)
+
+
+def measured(
+    found: Sequence[tuple[crowd.Times, crowd.Times, float]], monkeypatch: pytest.MonkeyPatch
+) -> closing[Stalls]:
+    """Return a Stalls object that will find these times of the node, the simulator and the hypervisor."""
+    nothing: crowd.Times = {}
+    times = iter([nothing, nothing, *(part for node, simulator, _ in found for part in (node, simulator))])
+    stolen = iter([0.0, 0.0, *(stolen_s for _, _, stolen_s in found)])
     monkeypatch.setattr(crowd, "_times", lambda _: next(times))
     monkeypatch.setattr(crowd, "_stolen_s", lambda: next(stolen))
     return closing(Stalls(os.getpid()))
+
+
+def test_a_stall_begins_where_the_wait_began(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The kernel counts a wait when it ends. Then, a node that loops may run for a whole frame."""
+    waits, runs = ({1: (0.0, 0.0)}, {2: (0.0, 0.0)}, 0.0), ({1: (0.015, 1.2)}, {2: (0.001, 0.0)}, 0.0)
+    with measured([waits, runs], monkeypatch) as watch:
+        assert watch.look(1.984) is None
+        stall = watch.look(2.0)
+    assert stall is not None
+    assert stall == pytest.approx((0.8, 2.0))
+    of: Any = Busy(0.015, 0.0)
+    assert not conductor._own_doing(stall, of, of)
+
+
+def test_a_short_wait_is_a_stall_of_one_frame(monkeypatch: pytest.MonkeyPatch) -> None:
+    waits, runs = ({1: (0.0, 0.0)}, {2: (0.0, 0.0)}, 0.0), ({1: (0.005, 0.2)}, {2: (0.001, 0.0)}, 0.0)
+    with measured([waits, runs], monkeypatch) as watch:
+        assert watch.look(1.984) is None
+        assert watch.look(2.0) == (1.984, 2.0)
+
+
+def test_a_stall_is_as_long_as_the_longest_wait_of_a_thread_and_not_as_all_waits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    together: crowd.Times = {1: (0.0, 0.4), 3: (0.0, 0.3), 4: (0.0, 0.4)}
+    with measured([({}, {}, 0.0), (together, {}, 0.0), ({}, {2: (0.0, 0.9)}, 0.0)], monkeypatch) as watch:
+        assert watch.look(1.984) is None
+        assert watch.look(2.0) == pytest.approx((1.6, 2.0))
+        assert watch.waited_s == pytest.approx(1.1)
+        assert watch.look(2.5) == (2.0, 2.5)  # no part of the time is in two stalls
 
 
 def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
