@@ -26,7 +26,7 @@ def awaits_in_group(evidence: Evidence) -> Cause | None:
     group at a time, and a coroutine counts as running while it awaits something. This does not apply to callbacks of
     futures, since these belong to no group.
     """
-    if any(isinstance(node, ast.keyword) and node.arg == "callback_group" for node in _nodes(evidence)):
+    if any(_is_of_groups(node) for node in _nodes(evidence)):
         return None
     coroutines = {node.name: node for node in _nodes(evidence) if isinstance(node, ast.AsyncFunctionDef)}
     waiting = [name for _, name in callbacks_of(evidence, *REGISTERS) if name in coroutines]
@@ -69,6 +69,14 @@ def never_awaited(evidence: Evidence) -> Cause | None:
 
 def _nodes(evidence: Evidence) -> list[ast.AST]:
     return [node for module in evidence.code.modules for node in module.nodes]
+
+
+def _is_of_groups(node: ast.AST) -> bool:
+    """Return whether this is the argument callback_group, or the name of a class of callback groups."""
+    if isinstance(node, ast.keyword):
+        return node.arg == "callback_group"
+    name = node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+    return name.endswith("CallbackGroup")
 
 
 def _is_future(function: ast.AsyncFunctionDef, value: ast.expr) -> bool:

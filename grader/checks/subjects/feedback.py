@@ -89,13 +89,20 @@ def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
             return failed(observed, expected, Cause("every-message", text, where))
         text = "Log the number in the callback of a timer while there is a goal."
         return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
-    gaps = [later.t_s - line.t_s for (line, of), (later, next_) in pairwise(told) if of is next_]
+    stalls = evidence.recording.stalls
+    gaps = [
+        later.t_s - line.t_s
+        for (line, of), (later, next_) in pairwise(told)
+        if of is next_ and not any(begin <= later.t_s and end >= line.t_s for begin, end in stalls)
+    ]
     middle_s = float(np.median(gaps)) if gaps else params.period_s
     if not SLOWEST.holds(middle_s / params.period_s):
         observed = f"While the turtle turns, a line appears every {middle_s:.2g} s."
         text = "The period of the timer whose callback logs the line is too long."
-        return failed(observed, expected, Cause("timer-period", text, evidence.place("create_timer")))
-    return passed("The lines show how far the turtle still has to turn.")
+        cause = Cause("timer-period", text, evidence.place("create_timer"))
+        return failed(observed, expected, cause, near_edge=SLOWEST.near(middle_s / params.period_s))
+    near = SLOWEST.near(middle_s / params.period_s)
+    return passed("The lines show how far the turtle still has to turn.", near_edge=near)
 
 
 def _unheard(evidence: Evidence) -> Cause | None:

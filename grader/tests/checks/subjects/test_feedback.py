@@ -143,6 +143,25 @@ def test_a_log_without_feedback_is_told(text: str, code: str, *, found: bool) ->
     assert ("Nothing in the node receives the feedback." in given) == found
 
 
+@pytest.mark.parametrize(
+    ("times", "stalls", "passes"),
+    [
+        ((0.5, 1.0, 1.5, 2.0, 2.5), (), True),
+        ((0.7, 1.7, 2.7), (), False),
+        ((0.7, 1.7, 2.7), ((1.0, 1.3),), False),
+        ((0.7, 1.7, 2.7), ((1.0, 1.3), (2.0, 2.2)), True),
+    ],
+)
+def test_the_time_between_two_lines_is_that_of_the_exercise_unless_the_machine_stalled(
+    times: tuple[float, ...], stalls: tuple[tuple[float, float], ...], *, passes: bool
+) -> None:
+    lines = tuple(LogLine(t_s, "INFO", "node", f"{3.0 - t_s:.2f} rad to go") for t_s in times)
+    made = recording([], goals=(goal(0.0, math.degrees(3.0), 3.0),), log=lines, frames=turning(0.0, 3.0))
+    trial = evidence(replace(made, stalls=stalls), submission({NODE_FILE: CLIENT}))
+    finding = found(LOG_FEEDBACK, trial, format="{remaining:.2f} rad to go")
+    assert finding.diagnosis == (None if passes else "timer-period")
+
+
 def test_only_the_lines_during_the_goals_count() -> None:
     assert "The node logged nothing during the goals." in about("2 rad", (3.5, 4.0))
     assert "The node logged nothing during the goals." not in about("2 rad", (2.5, 4.0))

@@ -152,3 +152,25 @@ def test_a_function_of_ones_own_that_is_named_call_hides_no_wait(line: str, diag
     source = NODE.replace("        msg = Twist()", line).replace("    def send", own)
     finding = found(NEVER_WAITS, evidence(recording(every(0.5, 2.0, 1.0)), submission({NODE_FILE: source})))
     assert finding.diagnosis == diagnosis
+
+
+GROUPED = "\nfrom rclpy.callback_groups import ReentrantCallbackGroup\ngroup = ReentrantCallbackGroup()\n"
+
+
+@pytest.mark.parametrize(
+    ("timer", "more", "deadlock"),
+    [
+        (TIMER, "", True),
+        (TIMER.replace("send)", "send, callback_group=group)"), "", False),
+        (TIMER.replace("send)", "send, group)"), GROUPED, False),
+    ],
+)
+def test_an_await_in_the_clients_group_is_a_deadlock(timer: str, more: str, *, deadlock: bool) -> None:
+    source = NODE.replace(CLIENT, f"        {PLAIN}\n        {timer}").replace("    def send(", "    async def send(")
+    source = source.replace(
+        "        msg = Twist()", "        await self.pen.call_async(request)\n        msg = Twist()"
+    )
+    assert "async def" in source
+    trial = recording(every(0.5, 2.0, 1.0, 10.0), calls=(PEN,))
+    finding = found(NEVER_WAITS, evidence(trial, submission({NODE_FILE: source + more})))
+    assert (finding.diagnosis == "waits-in-callback") is deadlock, finding
