@@ -107,7 +107,7 @@ EARLY_PEN = "The pen changed before the end of this arc. Ask for the next pen wh
     ("commands", "pens", "radius_m", "why"),
     [
         (CIRCLE, (pen(0.0), pen(2.1, 0)), 2.0, EARLY_PEN),
-        (CIRCLE, (pen(0.0, 0), pen(2.1)), 2.0, LATE_PEN),
+        (CIRCLE, (pen(0.0, 0), pen(2.1), pen(5.0, 0)), 2.0, LATE_PEN),
         (WIDER, (pen(0.0), pen(2.1, 0)), 1.0, None),
         (CIRCLE, (pen(0.0), pen(2.1, down=False)), 2.0, None),
     ],
