@@ -37,7 +37,7 @@ def why_parameter_call(scene: CrashScene) -> Cause | None:
     if (OF_RANGE.search(text) and scene.calls_on_line("IntegerRange")) or "The 'integer_range' field must be" in text:
         told = "integer_range and IntegerRange are for whole numbers. For a float, use floating_point_range and "
         return Cause("parameter-descriptor", f"{told}FloatingPointRange.")
-    if "First element <rclpy.parameter.Parameter object" in text and scene.calls_on_line("declare_parameter"):
+    if "element <rclpy.parameter.Parameter object" in text and scene.calls_on_line("declare_parameter"):
         return Cause("parameter-type", 'declare_parameter takes the name and the default value, as in ("volume", 1.0).')
     if error == "ParameterNotDeclaredException":
         return _replaced(scene) or _called_too_soon(scene)
