@@ -18,6 +18,7 @@ from grader.exercise.model import catalogue
 from grader.gradebook.new_class import make_class
 from grader.submission.package import open_submission
 from grader.submission.search import IGNORE_MARKER, PACKAGE_FILES
+from grader.tests.waiting import LONG_S
 
 ROOT = Path(__file__).resolve().parents[2]
 COLCON = Path(sys.executable).with_name("colcon")
@@ -41,7 +42,7 @@ def colcon_list(folder: Path) -> list[str]:
         capture_output=True,
         text=True,
         check=True,
-        timeout=300,
+        timeout=LONG_S,
     )
     assert done.stderr == ""
     return done.stdout.splitlines()

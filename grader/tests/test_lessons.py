@@ -24,6 +24,7 @@ from grader.submission.package_xml import read_manifest
 from grader.tests.console import differs, run
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
+from grader.tests.waiting import LONG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -93,7 +94,7 @@ def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path, requ
     reader.reads("start", step)
     if block.about == "solved":
         reader.solves(step)
-    for step, printed, _ in run(block, tmp_path, env, 300.0):
+    for step, printed, _ in run(block, tmp_path, env, LONG_S):
         assert differs(step.printed, printed) is None, printed
 
 
@@ -192,7 +193,7 @@ def test_examples_can_be_imported(block: Block, tmp_path: Path) -> None:
         env=environment(ros, home=tmp_path, domain=own_domain()),
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=LONG_S,
         check=False,
     )
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
@@ -219,7 +220,7 @@ def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) ->
         env=environment(ros, home=tmp_path, domain=own_domain()),
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=LONG_S,
         check=False,
     )
     assert (done.returncode, done.stdout) == (0, "thermometer 2000000000\n"), done.stderr
@@ -236,6 +237,8 @@ def test_the_tests_of_the_kettle_pass(tmp_path: Path) -> None:
         "-m", "pytest", "-q", python=str(ros.python), env=environment(ros, home=tmp_path), searches=True
     )
     env = {**start.env, "ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}
-    done = subprocess.run(start.argv, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=300, check=False)
+    done = subprocess.run(
+        start.argv, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=LONG_S, check=False
+    )
     assert "2 failed, 8 passed" in done.stdout, done.stdout
     assert "test_kettle" not in done.stdout.partition("short test summary")[2]

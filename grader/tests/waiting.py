@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 HANG_S = 180.0
+LONG_S = 800.0
+"""The time limit for several commands in a row (s). It is less than the time limit of a test in pyproject.toml."""
 _POLL_S = 0.05
 
 

@@ -19,6 +19,7 @@ from grader.exercise.model import course_folder
 from grader.ros2.bag.record import NOT_HERE
 from grader.tests.console import differs, run
 from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT, prose_of, text_of
+from grader.tests.waiting import LONG_S
 
 CONSOLE = {page: [block for block in blocks(text_of(page)) if block.language == "console"] for page in PAGES}
 SET_UP = re.compile(r"make \w+|source \.venv/bin/activate")
@@ -74,7 +75,7 @@ def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path)
     for earlier in CONSOLE[page][:number]:  # a reader has run the previous blocks first
         copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
         run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
-    for step, printed, exit_code in run(without_set_up(CONSOLE[page][number]), checkout, environment, 300.0):
+    for step, printed, exit_code in run(without_set_up(CONSOLE[page][number]), checkout, environment, LONG_S):
         assert exit_code == bool(FAILS.match(step.command)), f"{step.command}\n{printed}"
         assert "Traceback" not in printed
         assert differs(step.printed, printed) is None, f"{step.command}\n{printed}"
@@ -87,7 +88,7 @@ def test_the_package_that_the_page_creates_is_built_and_runs(checkout: Path) -> 
     workspace.mkdir()
     typed = [f"source {checkout / '.venv/setup.bash'}", *creating[0].text.splitlines()]
     block = Block("console", "", "\n".join(f"$ {line}" for line in typed))
-    for step, printed, exit_code in run(block, workspace, environment_of(checkout), 300.0):
+    for step, printed, exit_code in run(block, workspace, environment_of(checkout), LONG_S):
         assert exit_code == 0, f"{step.command}\n{printed}"
         assert not step.command.startswith("ros2 run") or "Hi from my_robot_controller." in printed, printed
 

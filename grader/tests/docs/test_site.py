@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT
+from grader.tests.waiting import LONG_S
 
 SPHINX = Path(sys.executable).with_name("sphinx-build")
 
@@ -24,7 +25,7 @@ def arguments() -> list[str]:
 
 def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
     folders = ["-c", str(source / "docs"), "-d", str(to / "doctrees"), str(source), str(to / "site")]
-    return subprocess.run([SPHINX, *arguments(), *folders], capture_output=True, text=True, check=False, timeout=300)
+    return subprocess.run([SPHINX, *arguments(), *folders], capture_output=True, text=True, check=False, timeout=LONG_S)
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PIL import Image
 
+from grader.tests.waiting import LONG_S
 from grader.turtlesim.services import SERVICES
 from grader.turtlesim.turtle import SIDE_M
 
@@ -263,7 +264,7 @@ def test_wrong_arguments_end_with_2_and_one_message(in_ros: InRos, arguments: li
         env=in_ros.environment(),
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=LONG_S,
         check=False,
     )
     assert done.returncode == 2
