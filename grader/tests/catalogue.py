@@ -44,7 +44,6 @@ SHOWN_BY_TESTS = {
     "package-xml-not-installed": "checks/subjects/test_installed.py",
     "publisher-in-callback": "checks/causes/test_why_rate.py",
     "resource-marker": "checks/subjects/test_installed.py",
-    "pause-never-ends": "checks/subjects/test_pause.py",
     "slow-stop": "checks/subjects/test_running.py",
     "unsteady-tests": "checks/subjects/test_tests_run.py",
     "square-gap": "checks/subjects/test_square.py",
