@@ -200,13 +200,12 @@ def _write(member: Member, folder: Path) -> None:
     """Write a file, or make a folder or a link. As with unzip and tar, a file of the same name is replaced."""
     target = folder.joinpath(*member.parts)
     try:
+        is_folder = member.content is None and not member.link
+        (target if is_folder else target.parent).mkdir(parents=True, exist_ok=True)
         if member.link:
-            target.parent.mkdir(parents=True, exist_ok=True)
             target.unlink(missing_ok=True)
             target.symlink_to(member.link)
-            return
-        (target if member.content is None else target.parent).mkdir(parents=True, exist_ok=True)
-        if member.content is not None:
+        elif member.content is not None:
             target.write_bytes(member.content)
             target.chmod(0o755 if member.executable else 0o644)
     except (FileExistsError, NotADirectoryError, IsADirectoryError) as error:

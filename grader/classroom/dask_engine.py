@@ -145,8 +145,19 @@ class DaskEngine:
         return happened
 
     def _worker_threads(self) -> dict[str, int]:
-        """Return the number of threads of each worker, by the address of the worker."""
-        return dict(self._client.nthreads())
+        """Return the number of threads of each worker, by the address of the worker.
+
+        Raises:
+            MachineError: the connection to the scheduler was lost.
+        """
+        try:
+            return dict(self._client.nthreads())
+        except Exception as error:
+            message = (
+                f"The connection to Dask's scheduler was lost ({error}). The results so far are kept. Run "
+                f"the same command again to continue."
+            )
+            raise MachineError(message) from error
 
     def _event(self, ended: _Running) -> Event:
         try:
@@ -170,14 +181,7 @@ class DaskEngine:
     def _look(self) -> list[Event]:
         """Update the list of workers. Return an event for each task whose worker was lost."""
         self._looked = time.monotonic()
-        try:
-            self._threads = self._worker_threads()
-        except Exception as error:
-            message = (
-                f"The connection to Dask's scheduler was lost ({error}). The results so far are kept. Run "
-                f"the same command again to continue."
-            )
-            raise MachineError(message) from error
+        self._threads = self._worker_threads()
         if self._threads:
             self._last_heard_from = time.monotonic()
         elif time.monotonic() - self._last_heard_from > WORKERS_S:

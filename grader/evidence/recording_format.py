@@ -147,9 +147,8 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         UsageError: the folder is not an archive that this version of the grader can read.
     """
     if not os.path.lexists(folder / "submission.json"):
-        is_none = f"{folder} is not a recording: it has no submission.json"
-        message = is_none if folder.is_dir() else f"There is no folder {folder}"
-        message = f"{message}. Give the folder that `grader check --recording` wrote."
+        why = "is not a recording: it has no submission.json" if folder.is_dir() else "is not a folder"
+        message = f"{folder} {why}. Give the folder that `grader check --recording` wrote."
         raise UsageError(message)
     try:
         about = _read(folder / "submission.json")

@@ -28,10 +28,10 @@ LEAST_MEMORY = 2048 * MIB
 """The address space that the machine must allow each program to use (bytes). With less, a node or a test may fail
 because of the machine."""
 RAISE_MEMORY = "ulimit -v unlimited"
-LEAST_PROCESSES = 128
+FREE_PROCESSES = 128
 """The number of processes and threads that a grading may need at the same time, beside the user's other processes. In
 measurements, a check of step 07 needed 116, and one of step 03 needed 49."""
-RAISE_PROCESSES = f"ulimit -u {32 * LEAST_PROCESSES}"
+RAISE_PROCESSES = f"ulimit -u {32 * FREE_PROCESSES}"
 MOST_OTHERS = 4096
 """Without cells, this number is added to the limit on processes, because the user's other processes also count."""
 
@@ -97,13 +97,13 @@ def require_processes() -> None:
     """
     most = resource.getrlimit(resource.RLIMIT_NPROC)[0]
     # Such a high limit is usually not reached, and counting the threads of all processes takes a while.
-    if os.geteuid() == 0 or most == resource.RLIM_INFINITY or most >= 32 * LEAST_PROCESSES:
+    if os.geteuid() == 0 or most == resource.RLIM_INFINITY or most >= 32 * FREE_PROCESSES:
         return
     running = _threads_of_user()
-    if most - running < LEAST_PROCESSES:
+    if most - running < FREE_PROCESSES:
         message = (
             f"This user may run at most {most} processes and threads here, and {running} are already running. A "
-            f"grading needs up to {LEAST_PROCESSES} more: type `{RAISE_PROCESSES}`, or use a terminal without this "
+            f"grading needs up to {FREE_PROCESSES} more: type `{RAISE_PROCESSES}`, or use a terminal without this "
             "limit."
         )
         raise MachineError(message)

@@ -132,8 +132,8 @@ class Threads:
         """Return the CPU time used so far (ns), which has grown if a thread has run and fallen asleep since.
 
         For the threads of this process, the result has the CPU time of each observed thread, and otherwise the total
-        of all threads of the process. If a thread or the process has exited, or if the system does not measure CPU
-        times of other processes, the result differs from all other results.
+        of all threads of the process, also of those that have exited. If the process or an observed thread of this
+        process has exited, or if the system does not measure CPU times, the result differs from all other results.
         """
         try:
             return tuple([time.clock_gettime_ns(clock) for clock in self._clocks])
@@ -171,20 +171,6 @@ class Threads:
         except ProcessLookupError:
             raise GoneError from None
 
-    def run_time_s(self) -> float:
-        """Return the CPU time (s) that all threads have used. Threads that have exited do not count."""
-        return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
-
-    def run_times_s(self) -> dict[int, float]:
-        """Return the CPU time (s) that each thread has used, by thread id, without the threads of Fast DDS."""
-        self._refresh()
-        found = {}
-        for tid, (_, schedstat) in self._files.items():
-            if tid == self.pid or not_of_dds(self._names[tid]):
-                with suppress(ProcessLookupError):
-                    found[tid] = int(os.pread(schedstat, 64, 0).split()[0]) / 1e9
-        return found
-
     def times_s(self) -> dict[int, tuple[float, float]]:
         """Return the times (s) for which each thread has run and waited for a processor, by thread id.
 
@@ -198,6 +184,15 @@ class Threads:
                 ran, waited, _ = os.pread(schedstat, 64, 0).split()
                 found[tid] = int(ran) / 1e9, int(waited) / 1e9
         return found
+
+    def run_time_s(self) -> float:
+        """Return the CPU time (s) that all threads have used. Threads that have exited do not count."""
+        return sum(ran_s for ran_s, _ in self.times_s().values())
+
+    def run_times_s(self) -> dict[int, float]:
+        """Return the CPU time (s) that each thread has used, by thread id, without the threads of Fast DDS."""
+        found = self.times_s()
+        return {tid: ran_s for tid, (ran_s, _) in found.items() if tid == self.pid or not_of_dds(self._names[tid])}
 
     def waits(self) -> list[Wait]:
         """Return the reason why each thread is waiting, except for the threads of Fast DDS.

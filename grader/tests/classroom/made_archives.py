@@ -36,6 +36,13 @@ def zipped(file: Path, *members: tuple[str | zipfile.ZipInfo, bytes]) -> Path:
     return file
 
 
+def link(name: str) -> zipfile.ZipInfo:
+    """Return the entry of a symbolic link in a zip archive, whose content is the target."""
+    info = zipfile.ZipInfo(name)
+    info.external_attr = (stat.S_IFLNK | 0o777) << 16
+    return info
+
+
 def files(archive: Path, links: Mapping[str, str] = {}) -> dict[str, bytes]:
     """Return the files in the archive, which must contain exactly these symbolic links."""
     with unpacked(archive) as folder:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import io
-import stat
 import tarfile
-import zipfile
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,7 +11,7 @@ import pytest
 from grader.classroom import unpack
 from grader.classroom.archives import unpacked
 from grader.submission.package import open_submission
-from grader.tests.classroom.made_archives import files, member, tar, zipped
+from grader.tests.classroom.made_archives import files, link, member, tar, zipped
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,9 +19,7 @@ if TYPE_CHECKING:
 
 def test_a_link_to_a_file_of_the_archive_is_this_file(tmp_path: Path) -> None:
     """As in a folder. Students link a file to another place of their workspace."""
-    link = zipfile.ZipInfo("pkg/b")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    assert files(zipped(tmp_path / "a.zip", (link, b"../a"), ("a", b"1"))) == {"a": b"1", "pkg/b": b"1"}
+    assert files(zipped(tmp_path / "a.zip", (link("pkg/b"), b"../a"), ("a", b"1"))) == {"a": b"1", "pkg/b": b"1"}
     with tarfile.open(tmp_path / "a.tar", "w") as archive:
         archive.addfile(member("pkg/c", tarfile.SYMTYPE, "./b"))
         archive.addfile(member("pkg/b", tarfile.SYMTYPE, "../a"))
@@ -40,10 +36,8 @@ def test_a_link_to_a_file_of_the_archive_is_this_file(tmp_path: Path) -> None:
 
 def test_links_do_not_exceed_the_size_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(unpack, "MOST_BYTES", 10)
-    link = zipfile.ZipInfo("b")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
     with pytest.raises(unpack.LargeArchiveError):
-        files(zipped(tmp_path / "a.zip", (link, b"a"), ("a", b"123456")))
+        files(zipped(tmp_path / "a.zip", (link("b"), b"a"), ("a", b"123456")))
 
 
 def test_links_and_devices_are_skipped_and_nothing_is_written_through_them(tmp_path: Path) -> None:
@@ -59,9 +53,7 @@ def test_links_and_devices_are_skipped_and_nothing_is_written_through_them(tmp_p
     )
     assert files(archive) == {"way/file": b"1"}
     assert list(outside.iterdir()) == []
-    link = zipfile.ZipInfo("link")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    archive = zipped(tmp_path / "a.zip", (link, b"/etc/passwd"), ("a", b"1"), ("link/below", b"2"))
+    archive = zipped(tmp_path / "a.zip", (link("link"), b"/etc/passwd"), ("a", b"1"), ("link/below", b"2"))
     assert files(archive) == {"a": b"1", "link/below": b"2"}
 
 
@@ -86,10 +78,7 @@ def test_a_link_that_leads_to_no_file_is_judged_as_in_a_folder(tmp_path: Path, e
     targets = {f"pkg/{name}": target for name, target in targets.items()}
     archive = tmp_path / f"ben.{ending}"
     if ending == "zip":
-        links = [zipfile.ZipInfo(name) for name in targets]
-        for link in links:
-            link.external_attr = (stat.S_IFLNK | 0o777) << 16
-        linked = ((link, targets[link.filename].encode()) for link in links)
+        linked = ((link(name), to.encode()) for name, to in targets.items())
         zipped(archive, ("package.xml", b""), ("pkg/sub/f.py", b"1"), *linked)
     else:
         symbolic = ((member(name, tarfile.SYMTYPE, to), b"") for name, to in targets.items())

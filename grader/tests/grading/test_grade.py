@@ -98,7 +98,7 @@ def test_a_damaged_recording_is_a_sentence(tmp_path: Path, recorded: Path, damag
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("", "is not a recording: it has no submission.json"), ("none", "no folder")]
+    ("name", "said"), [("", "is not a recording: it has no submission.json"), ("none", "is not a folder")]
 )
 def test_a_folder_that_is_no_recording_is_reported(tmp_path: Path, name: str, said: str) -> None:
     done = grader("regrade", tmp_path / name)
@@ -113,6 +113,18 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("recorded") / "kept"
     assert grader("check", SOLUTION, "--recording", folder).returncode == 0
     return folder
+
+
+LIMITED = """
+import os, grader.sandbox.limits as limits
+class Low:
+    def __getattr__(self, name):
+        return getattr(limits_of_system, name)
+    def getrlimit(self, which):
+        return ({limit}, {limit}) if which == self.{name} else limits_of_system.getrlimit(which)
+limits_of_system, limits.resource, limits.os = limits.resource, Low(), type("", (), {{"geteuid": lambda: 54321}})
+"""
+"""A low limit of an ordinary user."""
 
 
 def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
@@ -170,8 +182,10 @@ runner.IN_CELL, *runner.IMPORTED = copies
 """,
             "The build could not be started: ModuleNotFoundError",
         ),
+        (LIMITED.format(name="RLIMIT_NPROC", limit=100), "This user may run at most 100 processes and threads"),
+        (LIMITED.format(name="RLIMIT_AS", limit=2**30), "at most 1024 MiB of address space"),
     ],
-    ids=["no ROS", "no compiler", "no cell", "no room", "no empy"],
+    ids=["no ROS", "no compiler", "no cell", "no room", "no empy", "few processes", "little memory"],
 )
 def test_a_fault_of_the_machine_is_an_error_and_no_failure(tmp_path: Path, fault: str, said: str) -> None:
     done = broken(tmp_path, fault)

@@ -204,6 +204,17 @@ def test_after_two_saves_during_a_grading_only_the_last_text_is_graded(
     assert gradings.empty()
 
 
+def test_in_a_workspace_with_several_packages_that_of_the_step_is_graded(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (package.parent / "another").mkdir()
+    (package.parent / "another/setup.py").touch()
+    opened: list[Path] = []
+    monkeypatch.setattr("grader.learner.watch.grade", lambda _, given, *__, **___: opened.append(given.package_dir))
+    Watched(find_exercise(STEP), package.parent, Options(in_cell=False)).grade()
+    assert opened == [package]
+
+
 def test_a_package_that_was_missing_for_a_while_is_graded_again(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("grader.learner.watch.grade", lambda *_, **__: None)
     watched = Watched(find_exercise(STEP), package, Options(in_cell=False))
