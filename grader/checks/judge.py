@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.hidden_error import with_hidden_error
 from grader.checks.causes.why_rate import WITHOUT_PAUSE, period_of_zero
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
@@ -180,7 +181,7 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
         if finding.status is not Status.FAILED or kind.stage != "trial" or evidence.run.recording is None:
             return finding
         of_files = kind.judge_early(evidence, spec.params) is not None
-        return finding if of_files else unless_too_busy(finding, evidence.recording)
+        return finding if of_files else unless_too_busy(with_hidden_error(finding, evidence), evidence.recording)
     except MachineError as error:
         return Finding(Status.ERROR, str(error))
     except Exception as error:  # an exception in one check must not discard the other outcomes of a whole class

@@ -146,19 +146,6 @@ def returns_before(evidence: Evidence, call: str) -> Cause | None:
     return None
 
 
-def hidden_error(evidence: Evidence, call: str) -> Cause | None:
-    """Return the cause if `call` is in a try statement whose except clause hides every error, else None."""
-    for module in evidence.code.modules:
-        for node in module.nodes:
-            if isinstance(node, ast.Try) and any(calls_method(each, call) for each in node.body):
-                for handler in node.handlers:
-                    catches_all = handler.type is None or dotted(handler.type) in ("Exception", "BaseException")
-                    if catches_all and not any(isinstance(each, ast.Call | ast.Raise) for each in ast.walk(handler)):
-                        text = f"This except clause hides every error. An error before {call} may be the reason."
-                        return Cause("never-publishes", text, Where(module.file, handler.lineno))
-    return None
-
-
 def calls_method(node: ast.AST, name: str) -> bool:
     """Return whether the code calls a method with this name."""
     return any(isinstance(each, ast.Call) and getattr(each.func, "attr", "") == name for each in ast.walk(node))

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.hidden_error import hidden_error
 from grader.checks.causes.why_blocked import WAKES
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import loops, why_ended
 from grader.checks.causes.why_inactive import never_activated
 from grader.checks.causes.why_not_set import compared_condition
-from grader.checks.causes.why_silent import hidden_error, returns_before, why_nothing, why_qos
+from grader.checks.causes.why_silent import returns_before, why_nothing, why_qos
 from grader.checks.causes.wrong_topic import why_topic
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
