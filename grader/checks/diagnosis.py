@@ -222,6 +222,7 @@ Diagnosis = Literal[
     "not-shut-down",
     "test-hangs",
     "needs-the-outside",
+    "test-left-out",
     "all-skipped",
     "accepts-broken",
     # Answers

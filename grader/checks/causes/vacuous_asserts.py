@@ -1,4 +1,4 @@
-"""Find asserts that nearly always hold: an `or` with a constant, a value compared with itself, or a value alone."""
+"""Find asserts that nearly always hold, such as an `or` with a constant, or a value compared with itself."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.common.words import shorten
+from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -16,14 +17,51 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode
 
 
+TOLERANT = frozenset({"approx", "isclose"})
+TOLERANCES = ("rel", "abs", "rel_tol", "abs_tol")
+WIDE = 0.3
+"""A relative or absolute tolerance from which on the values of a broken node can pass as those of the correct one."""
+
+
 def vacuous_assert(code: TestCode) -> Cause | None:
     """Return the cause if an assert of a test holds on every node, else None."""
     for test in code.tests:
         for node in ast.walk(test.node):
             if isinstance(node, ast.Assert):
-                text = _or_constant(node.test) or _with_itself(node.test, _just_assigned(test.node, node.lineno))
+                text = _object(node.test) or _or_constant(node.test) or _never_false(node.test)
+                text = text or _with_itself(node.test, _just_assigned(test.node, node.lineno))
                 if text is not None:
                     return Cause("assert-vacuous", text, Where(test.module.file, node.lineno))
+    return None
+
+
+def wide_tolerance(code: TestCode) -> Cause | None:
+    """Return the cause if pytest.approx or isclose allows a large difference between values, else None.
+
+    A comparison of numbers of messages does not count.
+    """
+    for module in code.modules:
+        compared = [node for node in module.nodes if isinstance(node, ast.Compare) and "len(" in ast.unparse(node)]
+        counts = {id(each) for node in compared for each in ast.walk(node)}
+        for node in module.nodes:
+            wide = _tolerance(node) if isinstance(node, ast.Call) and id(node) not in counts else None
+            if wide is not None:
+                text = f"{wide} allows so large a difference that wrong values pass. Leave it out."
+                return Cause("assert-vacuous", text, Where(module.file, getattr(node, "lineno", None)))
+    return None
+
+
+def _tolerance(call: ast.Call) -> str | None:
+    """Return the argument that sets a tolerance of at least WIDE, as text, or None."""
+    name = (dotted(call.func) or "").rpartition(".")[2]
+    if name not in TOLERANT:
+        return None
+    given = {each.arg: each.value for each in call.keywords if each.arg in TOLERANCES}
+    if name == "approx":
+        given.update(zip(("rel", "abs"), call.args[1:], strict=False))
+    for argument, value in given.items():
+        if isinstance(value, ast.Constant) and isinstance(value.value, int | float) and value.value >= WIDE:
+            return f"{argument}={value.value}"
     return None
 
 
@@ -41,6 +79,33 @@ def _is_value(message: ast.expr | None) -> bool:
     """Return whether the message of an assert is a number or the name of a constant."""
     number = isinstance(message, ast.Constant) and isinstance(message.value, int | float)
     return number or (isinstance(message, ast.Name) and message.id.isupper())
+
+
+def _object(condition: ast.expr) -> str | None:
+    """Return a sentence about an object that counts as true whatever is in it, or None."""
+    if isinstance(condition, ast.List | ast.Set) and condition.elts:
+        return "A list or set that is not empty counts as true. Remove the brackets."
+    if isinstance(condition, ast.Lambda):
+        return "A function counts as true, and this one is never called. Write the condition without lambda."
+    if isinstance(condition, ast.GeneratorExp):
+        return "A generator counts as true, and nothing runs its condition. Call all(...) or any(...) with it."
+    if isinstance(condition, ast.NamedExpr) and isinstance(condition.value, ast.Constant) and condition.value.value:
+        return ":= assigns a value, which counts as true. To compare two values, write == between them."
+    return None
+
+
+def _never_false(condition: ast.expr) -> str | None:
+    """Return a sentence about a comparison that always holds, or None."""
+    if not isinstance(condition, ast.Compare) or len(condition.ops) != 1:
+        return None
+    left, operator, right = condition.left, condition.ops[0], condition.comparators[0]
+    if isinstance(operator, ast.IsNot) and isinstance(right, ast.List | ast.Dict | ast.Set):
+        return "is not compares two objects, and a new list is always another object. Write != instead."
+    zero = isinstance(right, ast.Constant) and not isinstance(right.value, bool) and right.value == 0
+    is_length = isinstance(left, ast.Call) and isinstance(left.func, ast.Name) and left.func.id == "len"
+    if is_length and zero and isinstance(operator, ast.GtE):
+        return "A length is never less than 0, so the condition always holds. Write the number that you expect."
+    return None
 
 
 def _or_constant(condition: ast.expr) -> str | None:

@@ -18,25 +18,34 @@ if TYPE_CHECKING:
 
 CLOCKS = frozenset({"time", "monotonic", "perf_counter", "monotonic_ns", "time_ns", "perf_counter_ns"})
 """Functions of Python's module `time` that measure wall time."""
+COMPARING = frozenset({"isclose", "allclose", "approx", "array_equal", "isinstance"})
+"""Functions whose result is useless unless something asserts it."""
 RAISING = frozenset({"raises", "fail", "warns"})
 """Functions of pytest that can make a test fail."""
-CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
 
 
 def without_assert(code: TestCode) -> tuple[TestFunction, ...]:
-    """Return the tests that neither assert anything themselves nor use a function or a fixture that does."""
+    """Return the tests that neither assert anything themselves nor use a function or a fixture that does.
+
+    The assert of a constant, such as `assert True`, does not count.
+    """
     functions = _functions(code.modules)
-    asserting = {name for name, node in functions if _asserts(node)}
+    asserting = {name for name, node in functions if asserts(node)}
     before = -1
     while len(asserting) != before:
         before = len(asserting)
         asserting |= {name for name, node in functions if asserting & _mentioned(node)}
-    return tuple(each for each in code.tests if not _asserts(each.node) and not asserting & _mentioned(each.node))
+    return tuple(each for each in code.tests if not asserts(each.node) and not asserting & _mentioned(each.node))
 
 
 def why_without_assert(test: TestFunction) -> Cause:
     """Return the mistake in a test that asserts nothing, such as a comparison without `assert`."""
     for node in _own(test.node):
+        if isinstance(node, ast.Assert):
+            text = (
+                f"{shorten(ast.unparse(node), 40)} never fails. Compare a message with a value that the node promises."
+            )
+            return Cause("assert-vacuous", text, Where(test.module.file, node.lineno))
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare):
             text = "Without assert before it, a comparison has no effect."
             return Cause("compares-only", text, Where(test.module.file, node.lineno))
@@ -44,6 +53,17 @@ def why_without_assert(test: TestFunction) -> Cause:
             text = "pytest ignores the return value of a test. Write assert instead of return."
             return Cause("compares-only", text, Where(test.module.file, node.lineno))
     return Cause("no-assert", "A test without an assert fails only if something raises an exception.", test.where)
+
+
+def without_effect(code: TestCode) -> Cause | None:
+    """Return the cause if a line of the test files compares values but does nothing with the result, else None."""
+    for module in code.modules:
+        for node in (each for each in module.nodes if isinstance(each, ast.Expr)):
+            value = node.value
+            if isinstance(value, ast.Compare) or (isinstance(value, ast.Call) and last_name(value.func) in COMPARING):
+                text = "Without assert before it, a comparison has no effect."
+                return Cause("compares-only", text, Where(module.file, node.lineno))
+    return None
 
 
 def named_twice(code: TestCode) -> Cause | None:
@@ -91,37 +111,6 @@ def always_false(code: TestCode) -> Cause | None:
     return None
 
 
-def swallowed(code: TestCode) -> Cause | None:
-    """Return the cause if an except clause catches an AssertionError and does not make the test fail, else None."""
-    for module in code.modules:
-        for node in module.nodes:
-            if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):
-                handler = next(filter(_catches, node.handlers), None)
-                if handler is not None and not _asserts(handler) and not _asserted_later(module, node, handler):
-                    text = "This except clause catches the AssertionError, so pytest does not notice the failure."
-                    return Cause("swallows-failure", text, Where(module.file, handler.lineno))
-    return None
-
-
-def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) -> bool:
-    """Return whether code outside the try statement makes the test fail.
-
-    It may be an assert that uses a name to which the try statement assigns, or to which the except clause appends, or
-    the else block of a loop that repeats the try statement.
-    """
-    loops = [node for node in module.nodes if isinstance(node, ast.For | ast.While) and tried in ast.walk(node)]
-    if any(_asserts(each) for loop in loops for each in loop.orelse):
-        return True
-    parts = [handler, *tried.body, *tried.orelse]
-    stored = (each for part in parts for each in ast.walk(part) if isinstance(getattr(each, "ctx", None), ast.Store))
-    kept = {_last(each) for each in stored if isinstance(each, ast.Name | ast.Attribute)}
-    calls = (each.func for each in ast.walk(handler) if isinstance(each, ast.Call))
-    kept |= {_last(each.value) for each in calls if isinstance(each, ast.Attribute) and each.attr in ("append", "add")}
-    inside = set(map(id, ast.walk(tried)))
-    later = [node for node in module.nodes if isinstance(node, ast.Assert) and id(node) not in inside]
-    return any(isinstance(each, ast.expr) and _last(each) in kept for node in later for each in ast.walk(node))
-
-
 def in_a_loop(code: TestCode) -> Cause | None:
     """Return the cause if all asserts of a test are in a loop over a list that may be empty, else None."""
     for test in code.tests:
@@ -160,9 +149,11 @@ def timed_loop(code: TestCode) -> Cause | None:
                 continue
             parts = [node.test.left, *node.test.comparators]
             wall = any(
-                isinstance(each, ast.Call) and _last(each.func) in CLOCKS for part in parts for each in ast.walk(part)
+                isinstance(each, ast.Call) and last_name(each.func) in CLOCKS
+                for part in parts
+                for each in ast.walk(part)
             )
-            if wall and not any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in _below(node.body)):
+            if wall and not any(isinstance(each, ast.Break | ast.Return | ast.Raise) for each in below(node.body)):
                 text = (
                     "On a slow computer, the node does less in this time. Advance the node's clock, or end the loop "
                     "when the message has arrived, and use the time only as a deadline."
@@ -180,26 +171,29 @@ def _functions(modules: tuple[Module, ...]) -> list[tuple[str, ast.AST]]:
     ]
 
 
-def _asserts(node: ast.AST) -> bool:
+def asserts(node: ast.AST) -> bool:
     """Return whether a function or an except clause can itself make a test fail, with pytest or with unittest."""
     return any(map(_asserts_here, ast.walk(node)))
 
 
 def _asserts_here(node: ast.AST) -> bool:
     """Return whether this syntax node itself can make a test fail: an assert, a raise, or such a call."""
-    name = _last(node.func) if isinstance(node, ast.Call) else ""
-    return isinstance(node, ast.Assert | ast.Raise) or name in RAISING or name.startswith("assert")
+    if isinstance(node, ast.Assert):
+        return not (isinstance(node.test, ast.Constant) and node.test.value)
+    name = last_name(node.func) if isinstance(node, ast.Call) else ""
+    return isinstance(node, ast.Raise) or name in RAISING or name.startswith("assert")
 
 
 def _mentioned(node: ast.AST) -> set[str]:
     """Return the names of the functions that a function calls, and of the fixtures that it requests."""
-    names = {_last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
+    names = {last_name(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         names |= {argument.arg for argument in node.args.args}
     return names
 
 
-def _last(node: ast.expr) -> str:
+def last_name(node: ast.AST) -> str:
+    """Return the name, or the last part of a dotted expression, or an empty string for other syntax nodes."""
     return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
 
 
@@ -209,7 +203,7 @@ def _fails(node: ast.AST) -> bool:
 
 
 def _is_call_of(node: ast.AST, name: str) -> bool:
-    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and _last(node.value.func) == name
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and last_name(node.value.func) == name
 
 
 def _own(function: ast.AST) -> Iterator[ast.AST]:
@@ -220,13 +214,7 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
             yield from _own(node)
 
 
-def _below(body: list[ast.stmt]) -> Iterator[ast.AST]:
+def below(body: list[ast.stmt]) -> Iterator[ast.AST]:
+    """Yield all syntax nodes of these statements."""
     for statement in body:
         yield from ast.walk(statement)
-
-
-def _catches(handler: ast.ExceptHandler) -> bool:
-    if handler.type is None:
-        return True
-    kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(_last(kind) in CATCHES_ALL for kind in kinds)

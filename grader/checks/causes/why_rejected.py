@@ -33,6 +33,8 @@ STYLE = re.compile(r"No module named '(?P<name>ament_(?:copyright|flake8|pep257|
 """Matches the message about a missing package that checks code style. Test files of `ros2 pkg create` import three."""
 IDENTITY = re.compile(r"(?:E\s+)?(?:AssertionError: )?assert (?P<left>\S+) is (?!not\b)(?P<right>\S+)")
 """Matches pytest's message about an assert with `is`."""
+UNCALLED = re.compile(r"assert [^\n]*<(?:bound method|function|built-in (?:function|method)) (?P<name>[\w.]+)")
+"""Matches pytest's message about an assert that compares a function with something."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 
@@ -110,6 +112,11 @@ def _known(message: str, where: Where | None) -> Cause | None:
     if field is not None:
         text = f"The field {shorten(field['name'], 60)} is a float. Write the number with a decimal point."
         return Cause("int-for-float", text, where)
+    uncalled = UNCALLED.match(message.removeprefix("E ").strip())
+    if uncalled is not None:
+        name = shorten(uncalled["name"].rpartition(".")[2], 60)
+        text = f"{name} is a function, and the test compares the function itself. Call it: {name}(...)."
+        return Cause("compares-only", text, where)
     if "approx() is not supported in a boolean context" in message:
         text = "pytest.approx is one side of a comparison: assert value == pytest.approx(expected)."
         return Cause("compares-only", text, where)

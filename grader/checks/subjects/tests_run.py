@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_message
-from grader.checks.causes.weak_tests import in_a_loop, named_twice, swallowed, why_without_assert, without_assert
+from grader.checks.causes.hidden_failures import left_out, swallowed
+from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_message, wide_tolerance
+from grader.checks.causes.weak_tests import in_a_loop, named_twice, why_without_assert, without_assert, without_effect
 from grader.checks.causes.why_no_test import why_no_test
 from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
 from grader.checks.causes.why_rejected import last_error, own_copy, why_rejected, why_wrong_tests
@@ -22,10 +24,12 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.exercise.node_under_test import Behaviour
-    from grader.submission.pytest_files import TestCode
+    from grader.submission.pytest_files import TestCode, TestFunction
     from grader.testbench.result import NodeRun
 
 MOST_TEXT = 120
+ADDRESS = re.compile(r" at 0x[0-9a-f]+")
+"""Matches the address of an object, which differs from run to run."""
 
 
 def found(evidence: Evidence, _: NoParams) -> Finding:
@@ -97,7 +101,7 @@ def _observed(run: NodeRun) -> str:
 
 
 def _one_line(text: str) -> str:
-    return " ".join(text.split("\n")[0].split()).rstrip(".")
+    return " ".join(ADDRESS.sub("", text.split("\n")[0]).split()).rstrip(".")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,10 +128,10 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
         name = shorten(run.test.rpartition("::")[2], 60)
         return passed(f"{name or 'A test'} fails on {params.does}, as required.")
     observed = f"No test fails on {params.does}."
-    return failed(observed, expected, _why_accepted(evidence, params, code))
+    return failed(observed, expected, _why_accepted(evidence, params, code, run))
 
 
-def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
+def _why_accepted(evidence: Evidence, params: Catches, code: TestCode, run: NodeRun) -> Cause:
     empty = without_assert(code)
     if empty and len(empty) == len(code.tests):
         return why_without_assert(empty[0])
@@ -136,15 +140,24 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
     cause = (
         own_copy(code, spec.name)
         or named_twice(code)
+        or left_out(run, code)
         or swallowed(code)
         or _why_not_called(evidence, params.broken, code)
     )
-    cause = cause or vacuous_assert(code) or value_as_message(code)
+    cause = cause or vacuous_assert(code) or value_as_message(code) or _asserts_a_constant(empty)
     if cause is None and _is_silent(evidence, params.broken):
         cause = in_a_loop(code)
+    if cause is None and _differs_in_values(evidence, params.broken):
+        cause = wide_tolerance(code)
+    cause = cause or without_effect(code)
     # No line is wrong: a test is missing.
     where = Where(code.tests[0].module.file) if code.tests else None
     return cause or Cause("accepts-broken", params.cause, where)
+
+
+def _asserts_a_constant(empty: tuple[TestFunction, ...]) -> Cause | None:
+    """Return the cause if a test of these tests without an assert that can fail asserts a constant, else None."""
+    return next((each for each in map(why_without_assert, empty) if each.diagnosis == "assert-vacuous"), None)
 
 
 def _why_not_called(evidence: Evidence, broken: str, code: TestCode) -> Cause | None:
@@ -160,6 +173,15 @@ def _is_silent(evidence: Evidence, broken: str) -> bool:
     behaviours: dict[str, Behaviour] = {each.id: each.behaviour for each in spec.broken}
     of, right = behaviours.get(broken, spec.right), spec.right
     return not of.publishes or of.topic != right.topic or of.type != right.type or of.listens != right.listens
+
+
+def _differs_in_values(evidence: Evidence, broken: str) -> bool:
+    """Return whether the broken node sends as many commands as the correct node, but with other values."""
+    spec = evidence.trial.tests
+    assert spec is not None
+    behaviours: dict[str, Behaviour] = {each.id: each.behaviour for each in spec.broken}
+    of, right = behaviours.get(broken, spec.right), spec.right
+    return not _is_silent(evidence, broken) and (of.period_s, of.waits) == (right.period_s, right.waits)
 
 
 def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:

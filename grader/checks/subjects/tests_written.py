@@ -154,8 +154,9 @@ def asserts(evidence: Evidence, _: NoParams) -> Finding:
         return failed("An assert is always true.", expected, cause)
     empty = without_assert(code)
     if empty:
-        names = a_list([shorten(each.node.name, 60) for each in empty[:3]])
-        return failed(f"There is no assert in {names}.", expected, why_without_assert(empty[0]))
+        names, cause = a_list([shorten(each.node.name, 60) for each in empty[:3]]), why_without_assert(empty[0])
+        always = cause.diagnosis == "assert-vacuous"
+        return failed("An assert is always true." if always else f"There is no assert in {names}.", expected, cause)
     return passed(expected)
 
 
@@ -197,5 +198,5 @@ ASSERTS = Kind(
     NoParams,
     asserts,
     about="Every test function asserts something, or uses a function or fixture that does. No assert is always true "
-    "because it tests a tuple, has a constant after `or`, or compares a value with itself.",
+    "because it tests a tuple, a list or a constant, has a constant after `or`, or compares a value with itself.",
 )

@@ -8,6 +8,11 @@ from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_messag
 from grader.submission.pytest_files import read_test_code
 
 CONSTANT = "11 alone counts as true, so the condition always holds. Repeat the comparison after or."
+LENGTH = "A length is never less than 0, so the condition always holds. Write the number that you expect."
+WALRUS = ":= assigns a value, which counts as true. To compare two values, write == between them."
+OBJECT = "is not compares two objects, and a new list is always another object. Write != instead."
+LAMBDA = "A function counts as true, and this one is never called. Write the condition without lambda."
+GENERATOR = "A generator counts as true, and nothing runs its condition. Call all(...) or any(...) with it."
 ITSELF = "This compares a value with itself. Compare it with the number that the node promises."
 
 
@@ -18,6 +23,20 @@ ITSELF = "This compares a value with itself. Compare it with the number that the
         ("    assert len(bench.heard) == 10 or len(bench.heard) == 11", None),
         ("    assert len(bench.heard) == 10 or 0", None),
         ("    assert len(bench.heard) == 10 and 11", None),
+        ("    assert [len(bench.heard) == 10]", "A list or set that is not empty counts as true. Remove the brackets."),
+        ("    assert []", None),
+        ("    assert [len(bench.heard)] == [10]", None),
+        ("    assert lambda: bench.heard", LAMBDA),
+        ("    assert (each.x == 1.0 for each in bench.heard)", GENERATOR),
+        ("    assert all(each.x == 1.0 for each in bench.heard)", None),
+        ("    assert (number := 10)", WALRUS),
+        ("    assert (number := len(bench.heard))", None),
+        ("    assert len(bench.heard) >= 0", LENGTH),
+        ("    assert len(bench.heard) > 0", None),
+        ("    assert len(bench.heard) >= 1", None),
+        ("    assert bench.heard[-1].x >= 0", None),
+        ("    assert bench.heard is not []", OBJECT),
+        ("    assert bench.heard is not None", None),
         ("    assert bench.heard[-1] == bench.heard[-1]", ITSELF),
         ("    last = bench.heard[-1]\n    assert last.linear.x == bench.heard[-1].linear.x", ITSELF),
         ("    last = bench.heard[-1]\n    assert last.linear.x == bench.heard[-2].linear.x", None),

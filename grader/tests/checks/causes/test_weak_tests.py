@@ -9,13 +9,11 @@ from grader.checks.causes.weak_tests import (
     always_true,
     in_a_loop,
     named_twice,
-    swallowed,
     why_without_assert,
 )
 from grader.submission.pytest_files import TestCode, read_test_code
 
 SEARCH = "    for each in bench.heard:\n        if each.linear.x == 0.0:\n            return\n"
-TRY = "    try:\n        assert bench.heard\n    {handler}\n"
 
 
 def code(body: str, above: str = "") -> TestCode:
@@ -29,6 +27,7 @@ def code(body: str, above: str = "") -> TestCode:
         ("    bench.count() == 10", "Without assert before it, a comparison has no effect.", 2),
         ("    return bench.count() == 10", "pytest ignores the return value of a test. Write assert instead", 2),
         ("    print(bench.count())", "A test without an assert fails only if something raises an exception.", 1),
+        ("    print(3)\n    assert True", "assert True never fails. Compare a message with a value", 3),
         (
             "    def done():\n        return bench.count() == 10\n    bench.spin(done)",
             "A test without an assert fails only if something raises an exception.",
@@ -40,7 +39,12 @@ def test_what_a_test_has_in_place_of_an_assert_is_told(body: str, words: str, li
     given = code(body)
     cause = why_without_assert(given.tests[0])
     assert (cause.text.startswith(words), cause.where and cause.where.line) == (True, line)
-    others = {"Without assert before it", "pytest ignores the return value", "A test without an assert fails"}
+    others = {
+        "Without assert before it",
+        "pytest ignores the return value",
+        "A test without an assert fails",
+        "never fails",
+    }
     assert [each for each in others if each in cause.text] == [each for each in others if each in words]
 
 
@@ -84,39 +88,6 @@ def test_a_test_that_is_marked_as_skipped_or_failing_does_not_count(mark: str, *
         {"test/test_guard.py": f"@pytest.mark.{mark}\ndef test_it():\n    assert False\n".encode()}, "x"
     )
     assert (always_false(given) is not None) == found
-
-
-@pytest.mark.parametrize(
-    ("handler", "after", "found"),
-    [
-        ("except AssertionError:\n        print('it drives')", "", True),
-        ("except:\n        pass", "", True),
-        ("except (ValueError, Exception):\n        pass", "", True),
-        ("except ValueError:\n        pass", "", False),
-        ("except AssertionError:\n        raise", "", False),
-        ("except AssertionError:\n        raise\n    except Exception:\n        pass", "", False),
-        ("except AssertionError:\n        pytest.fail('it drives')", "", False),
-        ("except AssertionError:\n        assert False, 'it drives'", "", False),
-        ("except AssertionError:\n        wrong = True", "    assert not wrong", False),
-        ("except AssertionError:\n        wrong.append(1)", "    assert not wrong", False),
-        ("except AssertionError:\n        wrong = True", "    print(wrong)", True),
-        ("except AssertionError:\n        bench.wrong = True", "    assert not bench.wrong", False),
-        ("except AssertionError:\n        bench.wrong = True", "    assert bench.heard", True),
-        ("except AssertionError:\n        pass\n    else:\n        right = True", "    assert right", False),
-    ],
-)
-def test_an_except_that_hides_a_failure_is_found(handler: str, after: str, *, found: bool) -> None:
-    cause = swallowed(code(TRY.format(handler=handler) + after))
-    assert (cause is not None) == found
-    words = "This except clause catches the AssertionError, so pytest does not notice the failure."
-    assert cause is None or (cause.text, cause.where and cause.where.line) == (words, 4)
-
-
-@pytest.mark.parametrize(("end", "found"), [("pytest.fail('silent')", False), ("print('silent')", True)])
-def test_a_loop_that_tries_again_may_fail_in_its_else_block(end: str, *, found: bool) -> None:
-    again = "        try:\n            assert bench.heard\n            break\n        except AssertionError:\n"
-    body = f"    for _ in range(9):\n{again}            bench.spin()\n    else:\n        {end}"
-    assert (swallowed(code(body)) is not None) == found
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,21 @@ def cause(message: str, *, over: bool = False) -> str:
             "E   AssertionError: The 'x' field is not 1.0",
             "The field x is a float. Write the number with a decimal point.",
         ),
+        (
+            "assert 1.1 == <function approx at 0x7f0>",
+            "assert 1.1 == 1.2 ± 1.2e-06",
+            "approx is a function, and the test compares the function itself. Call it: approx(...).",
+        ),
+        (
+            "E   assert <built-in method count of list object at 0x7f0> == 10",
+            "E   assert 9 == 10\nE    +  where 9 = <built-in method count of list object at 0x7f0>(3)",
+            "count is a function, and the test compares the function itself. Call it: count(...).",
+        ),
+        (
+            "assert <bound method Bench.count of <Bench object at 0x7f0>> == 10",
+            "assert <Bench object at 0x7f0> == 10",
+            "count is a function, and the test compares the function itself. Call it: count(...).",
+        ),
     ],
 )
 def test_the_message_of_pytest_decides(message: str, near: str, words: str) -> None:

@@ -205,3 +205,60 @@ NONE_FOUND = NodeRun("", 5)
 def test_a_sentence_about_found_tests_is_true(words: str, true: tuple[NodeRun, str], near: tuple[NodeRun, str]) -> None:
     assert words in told(FOUND.check(given(true[0], source=true[1]), NoParams()))
     assert words not in told(FOUND.check(given(near[0], source=near[1]), NoParams()))
+
+
+def test_the_address_of_an_object_is_not_in_the_report() -> None:
+    message = "assert 1.1 == <function approx at 0x7f1111fe9800>"
+    assert "fails on the correct node: assert 1.1 == <function approx>." in about_pass(
+        *[dataclasses.replace(BAD, message=message)] * 3
+    )
+
+
+def why_accepted(node: str, body: str, run: NodeRun = GOOD) -> str:
+    """Return what the student reads about a broken node of the course that the test with this body accepts."""
+    check = next(check for check in find_exercise("12-tests").checks if check.id == node)
+    source = f"import pytest\n\n\ndef test_it(bench):\n{body}\n    assert bench.count() == 10\n"
+    return told(CATCHES.judge(given(GOOD, dataclasses.replace(run, node=node), source=source), check.params))
+
+
+WIDE = "abs=0.5 allows so large a difference that wrong values pass. Leave it out."
+
+
+@pytest.mark.parametrize(
+    ("node", "body", "words"),
+    [
+        ("speed", "    assert bench.x == pytest.approx(1.1, abs=0.5)", WIDE),
+        ("speed", "    assert bench.x == pytest.approx(1.1, 1e-3, 0.5)", WIDE),
+        ("speed", "    assert math.isclose(bench.x, 1.1, abs_tol=0.5)", f"abs_tol{WIDE.removeprefix('abs')}"),
+        ("speed", "    assert math.isclose(bench.x, 1.1)", None),
+        ("speed", "    assert bench.x == pytest.approx(1.1, abs=0.01)", None),
+        ("speed", "    assert len(bench.heard) == pytest.approx(10, abs=1)", None),
+        ("rate", "    assert bench.x == pytest.approx(1.1, abs=0.5)", None),
+        ("early", "    assert bench.x == pytest.approx(1.1, abs=0.5)", None),
+        ("speed", "    math.isclose(bench.x, 1.1)", "Without assert before it, a comparison has no effect."),
+        ("speed", "    bench.x == 1.1", "Without assert before it, a comparison has no effect."),
+        (
+            "speed",
+            "    with suppress(AssertionError):\n        assert bench.x == 1.1",
+            "suppress catches the Assertion",
+        ),
+    ],
+)
+def test_what_weakens_a_test_is_reported(node: str, body: str, words: str | None) -> None:
+    told_ = why_accepted(node, body)
+    missing = {
+        "speed": "No test requires that linear.x is",
+        "rate": "No test requires a command every",
+        "early": "No test",
+    }
+    assert (words or missing[node]) in told_
+
+
+def test_a_test_that_was_skipped_on_the_broken_node_is_reported() -> None:
+    skipped = dataclasses.replace(GOOD, passed=2, skipped=1)
+    assert "pytest ignores the failure of 1 test" in why_accepted("speed", "    pass", skipped)
+
+
+def test_a_constant_in_one_of_two_tests_is_reported() -> None:
+    body = "    assert True\n\n\ndef test_other(bench):"
+    assert "assert True never fails." in why_accepted("rate", body)

@@ -47,6 +47,8 @@ def test_what_looks_at_the_source_is_found_by_what_it_uses(code: str, diagnosis:
         ("    bench.count() == 10\n", "compares-only"),
         ("    assert (bench.count() == 10, 'ten')\n", "assert-tuple"),
         ("    print(bench.count())\n", "no-assert"),
+        ("    assert True\n", "assert-vacuous"),
+        ("    assert bench.count() == 10\n    assert True\n", None),
     ],
 )
 def test_a_test_needs_an_assert_that_can_fail(body: str, diagnosis: str | None) -> None:
