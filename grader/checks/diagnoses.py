@@ -213,6 +213,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "test-function-name": "pytest ignores a function or a class because of its name",
         "test-class-init": "pytest ignores a test class that has an __init__",
         "test-import": "a test file cannot be imported",
+        "test-parametrize": "the arguments of parametrize do not fit the test",
         "no-assert": "a test asserts nothing",
         "assert-tuple": "an assert tests a tuple, which is always true",
         "compares-only": "a comparison has no effect, because it is not in an assert",

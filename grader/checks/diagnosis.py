@@ -196,6 +196,7 @@ Diagnosis = Literal[
     "test-function-name",
     "test-class-init",
     "test-import",
+    "test-parametrize",
     "no-assert",
     "assert-tuple",
     "compares-only",

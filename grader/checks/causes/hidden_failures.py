@@ -43,6 +43,9 @@ def swallowed(code: TestCode) -> Cause | None:
 def left_out(run: NodeRun, code: TestCode) -> Cause | None:
     """Return the cause if pytest skipped tests in this run, expected them to fail, or did not run them, else None."""
     where = next(_set_aside(code), None)
+    empty = next(_runs_zero_times(code), None)
+    if run.skipped and where is None and empty is not None:
+        return Cause("test-left-out", "parametrize has no values here, so pytest skips the test.", empty)
     if run.skipped:
         text = f"pytest ignores the failure of {count(run.skipped, 'test')}, because of a mark such as skip or xfail."
         return Cause("test-left-out", text, where)
@@ -93,6 +96,15 @@ def _set_aside(code: TestCode) -> Iterator[Where]:
         for node in module.nodes:
             if isinstance(node, ast.Attribute | ast.Name) and last_name(node) in SETS_ASIDE:
                 yield Where(module.file, node.lineno)
+
+
+def _runs_zero_times(code: TestCode) -> Iterator[Where]:
+    """Yield the lines with decorators that parametrize a test with an empty list."""
+    for test in code.tests:
+        for call in (each for each in test.node.decorator_list if isinstance(each, ast.Call)):
+            values = call.args[1] if len(call.args) > 1 else None
+            if last_name(call.func) == "parametrize" and isinstance(values, ast.List | ast.Tuple) and not values.elts:
+                yield Where(test.module.file, call.lineno)
 
 
 def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) -> bool:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.weak_tests import always_false
+from grader.checks.causes.why_hung import waits_for_a_person, why_hung
+from grader.checks.causes.why_not_collected import why_not_collected
 from grader.checks.causes.why_test_raised import why_test_raised
 from grader.common.words import shorten
 from grader.submission.where import Where
@@ -54,12 +56,8 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     """
     where = place_of(run, code)
     if run.over:
-        text = (
-            "If a loop in a test waits for a message, give the loop a deadline. Do not call rclpy.spin in a test, "
-            "because it does not return. Call spin_once with a timeout."
-        )
-        return Cause("test-hangs", text, where or (code.tests[0].where if code.tests else None))
-    known = _known(run.message, where)
+        return why_hung(code, where)
+    known = waits_for_a_person(run.message, code) or why_not_collected(run, code) or _known(run.message, where)
     if known is not None:
         return known
     if run.outcome == "import":
@@ -101,12 +99,15 @@ def _known(message: str, where: Where | None) -> Cause | None:
     if fixture is not None:
         text = (
             f"No fixture is named {shorten(fixture['name'], 60)}. Does a function with this name have the "
-            "decorator pytest.fixture?"
+            "decorator pytest.fixture? Each parameter of a test is the name of a fixture, or a name in parametrize."
         )
         return Cause("fixture-missing", text, where)
     unnamed = UNNAMED.search(message)
     if unnamed is not None:
         text = "The name of the fixture is not a parameter of the test, so it refers to the fixture function itself."
+        return Cause("fixture-missing", text, where)
+    if "fixture function has more than one 'yield'" in message:
+        text = "A fixture has one yield. The lines before it prepare the object, and the lines after it clean up."
         return Cause("fixture-missing", text, where)
     field = FIELD.search(message)
     if field is not None:

@@ -11,8 +11,9 @@ from grader.checks.causes.hidden_failures import left_out, swallowed
 from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_message, wide_tolerance
 from grader.checks.causes.weak_tests import in_a_loop, named_twice, why_without_assert, without_assert, without_effect
 from grader.checks.causes.why_no_test import why_no_test
+from grader.checks.causes.why_not_collected import of_parametrize
 from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
-from grader.checks.causes.why_rejected import last_error, own_copy, why_rejected, why_wrong_tests
+from grader.checks.causes.why_rejected import FIXTURE, last_error, own_copy, why_rejected, why_wrong_tests
 from grader.checks.kind import Kind, NoParams, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.own_values import drawn_numbers
@@ -90,11 +91,13 @@ def _observed(run: NodeRun) -> str:
         return "The tests did not finish in time on the correct node."
     name = shorten(run.test.rpartition("::")[2] or run.test, 60)
     if run.outcome == "import":
-        return f"{shorten(run.test, 60)} cannot be imported."
+        collects = "pytest cannot collect the tests in {file}." if of_parametrize(run) else "{file} cannot be imported."
+        return collects.format(file=shorten(run.test, 60))
     if not name:
         return f"The tests on the correct node ended with exit code {run.exit_code}."
     # pytest explains the values of a comparison in lines that begin with "+". They would hide the cause.
-    compared = run.message.partition("\n +")[0]
+    missing = FIXTURE.search(run.message)
+    compared = missing.group() if missing else run.message.partition("\n +")[0]
     message = last_error(f"E   {compared}") if compared else ""
     text = shorten(_one_line(message), MOST_TEXT)
     return f"{name} fails on the correct node: {text}." if text else f"{name} fails on the correct node."

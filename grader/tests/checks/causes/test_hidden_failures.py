@@ -76,6 +76,19 @@ def test_what_discards_a_failure_is_found(body: str, words: str | None, line: in
     assert (cause is not None and words is not None and cause.text.startswith(words)) == (words is not None)
 
 
+def test_a_test_that_runs_zero_times_is_reported() -> None:
+    run = NodeRun("rate", 0, collected=2, passed=1, skipped=1)
+    above = "import pytest\n\n\n@pytest.mark.parametrize('x', {})\n"
+    cause = left_out(run, code("    assert bench.heard", above.format("[]")))
+    assert cause is not None
+    assert cause.text == "parametrize has no values here, so pytest skips the test."
+    assert cause.where is not None
+    assert cause.where.line == 4
+    other = left_out(run, code("    assert bench.heard", above.format("[1.0]")))
+    assert other is not None
+    assert "parametrize" not in other.text
+
+
 MARKED = "import pytest\n\n\n@pytest.mark.xfail\n"
 
 
