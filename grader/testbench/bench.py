@@ -9,6 +9,7 @@ tests that pass by chance get few points (docs/security.md).
 
 from __future__ import annotations
 
+import ast
 import io
 import random
 import re
@@ -21,6 +22,7 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
 
+from grader.submission.code import read_module
 from grader.testbench.lane import Lane, Package
 
 if TYPE_CHECKING:
@@ -45,6 +47,8 @@ _MORE_PARTICIPANTS = re.compile(
     rb"|\b(?:spawn[lv]\w*|subprocess|system)\b"
 )
 """Matches names that code must contain to create a second ROS 2 context or a second process."""
+NO_OPTIONS = "def __init__(self):\n        super().__init__()"
+"""The body of the grader's class if the student's own class has no parameters."""
 DOUBT_S = 1.0
 """The time limit for each test on a broken node (s), as long as no run on the correct node has ended."""
 
@@ -200,10 +204,27 @@ def _is_module(path: str) -> bool:
     return path.endswith(".py") and path != "setup.py"
 
 
+def takes_options(files: Mapping[str, bytes], file: str, name: str) -> bool:
+    """Return whether __init__ of the student's own class has parameters besides self.
+
+    If it has none, the grader's class must have none either: otherwise, tests pass that fail in the student's
+    workspace. The result is True if the file or the class has no such method.
+    """
+    for node in read_module(file, files.get(file, b"")).nodes:
+        if isinstance(node, ast.ClassDef) and node.name == name:
+            for method in node.body:
+                if isinstance(method, ast.FunctionDef) and method.name == "__init__":
+                    given = method.args
+                    named = [*given.posonlyargs, *given.args][1:] + given.kwonlyargs
+                    return bool(named or given.vararg or given.kwarg)
+    return True
+
+
 def pack(spec: TestsSpec, package: str, files: Mapping[str, bytes]) -> bytes:
     """Return the files of the package as a tar stream, with the relayed node in place of the node's module."""
     module = f"{spec.module.replace('.', '/')}.py"
-    text = f"{RELAYED.read_text('utf-8')}\n\nclass {spec.name}(RelayedNode):\n    pass\n"
+    body = "pass" if takes_options(files, module, spec.name) else NO_OPTIONS
+    text = f"{RELAYED.read_text('utf-8')}\n\nclass {spec.name}(RelayedNode):\n    {body}\n"
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as tar:
         for path, content in {**files, module: text.encode()}.items():

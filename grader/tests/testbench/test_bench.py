@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import io
+import tarfile
 from typing import TYPE_CHECKING
 
 import pytest
@@ -199,3 +201,26 @@ def test_nodes_in_two_contexts_discover_each_other(files: dict[str, bytes], in_c
 )
 def test_more_contexts_and_processes_are_noticed(code: str, alone: bool) -> None:
     assert uses_one_participant({"setup.py": b"os.system('make')", "test/test_it.py": code.encode()}) is alone
+
+
+@pytest.mark.parametrize(
+    ("parameters", "takes"),
+    [
+        ("self", False),
+        ("self, /", False),
+        ("self, **options", True),
+        ("self, name='wall_guard'", True),
+        ("self, *, parameter_overrides=()", True),
+    ],
+)
+def test_the_node_takes_options_only_if_the_students_own_node_takes_them(parameters: str, *, takes: bool) -> None:
+    """Without options, a test that passes parameter_overrides fails in the student's workspace."""
+    nodes = spec()
+    source = f"class WallGuard(Node):\n    def __init__({parameters}):\n        pass\n"
+    module = "my_robot_controller/wall_guard.py"
+    packed = bench.pack(nodes, "my_robot_controller", {module: source.encode()})
+    with tarfile.open(fileobj=io.BytesIO(packed)) as tree:
+        given = tree.extractfile(f"my_robot_controller/{module}")
+        assert given is not None
+        assert given.read().decode().endswith("(RelayedNode):\n    pass\n") == takes
+    assert bench.takes_options({}, module, "WallGuard")
