@@ -21,6 +21,7 @@ from grader.common.needed_command import needed_command
 from grader.common.own_process import prepare
 from grader.common.standard_streams import make_usable
 from grader.common.terminal_text import say
+from grader.common.updated import updated
 from grader.errors import MachineError
 from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
@@ -240,7 +241,10 @@ def _run() -> None:
 
 
 def _explain(error: Exception) -> str | None:
-    """Return a sentence if a module cannot be imported because the course has changed since its set-up."""
+    """Return a sentence if the course was updated during this command, or has changed since its set-up."""
+    if updated():
+        what = f"{type(error).__name__}: {error}"
+        return f"the course was updated while this command was running ({what}). Type the command again."
     if not isinstance(error, ImportError):
         return None
     from grader.setup import bootstrap

@@ -6,8 +6,9 @@ import errno
 from typing import TYPE_CHECKING
 
 from grader.common.system_errors import of_the_machine
+from grader.common.updated import START_AGAIN, updated
 from grader.common.words import a_list, nearest
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
 from grader.exercise.exercise_toml import parse_exercise
 from grader.exercise.model import FILE_NAME, Exercise, catalogue
 from grader.exercise.tables import read_toml
@@ -81,7 +82,8 @@ def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
     a kind is then imported only for a check without a title, so loading step 03 is more than ten times as fast.
 
     Raises UsageError, which says why the file cannot be read, or lists every problem in it: the key, its value, and the
-    allowed values. Raises OSError if the machine is at fault, for example because of a read error.
+    allowed values. Raises MachineError if the course was updated since this process was started, and OSError if the
+    machine is at fault, for example because of a read error.
     """
     from grader.checks.kinds import KINDS, OUTLINES  # imported here: a list of exercises does not need it
 
@@ -93,7 +95,12 @@ def load_exercise(path: Path, *, outline: bool = False) -> Exercise:
             raise  # a file without read permission has EACCES; EPERM means that the machine forbids the call
         message = f"{file}: cannot be read ({error.strerror})."
         raise UsageError(message) from error
-    return parse_exercise(data, name=str(file), folder=file.parent, kinds=OUTLINES if outline else KINDS)
+    try:
+        return parse_exercise(data, name=str(file), folder=file.parent, kinds=OUTLINES if outline else KINDS)
+    except UsageError as error:
+        if updated():  # the file may use what only the new version knows
+            raise MachineError(START_AGAIN) from error
+        raise
 
 
 def title_of(path: Path) -> str:

@@ -15,6 +15,7 @@ from grader.classroom.found import what_to_do_with
 from grader.classroom.order import Order, sort_out, sources_for
 from grader.classroom.progress_display import screen, summary
 from grader.classroom.roster import read_owners
+from grader.common.updated import updated
 from grader.common.words import a_list, count
 from grader.errors import MachineError, UsageError
 from grader.ros import underlay
@@ -33,6 +34,10 @@ if TYPE_CHECKING:
 
 DASK = "dask://"
 _DASK = re.compile(rf"{DASK}\S+:\d{{1,5}}")
+UPDATED = (
+    "The course was updated during this run, so these results may come from a mixture of two versions. Run the same "
+    "command again: it grades all submissions with the new version."
+)
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,8 @@ def grade_found(
         result_files.write_all(folder, ordered, request.repository_folder)
         left = folder.others({result.page for result in ordered})
     say(summary(ordered))
+    if graded and updated():
+        say(UPDATED)
     if left:
         say(f"Not changed: {count(left, 'result')} of other submissions in {request.out}/{results.REPORTS}.")
     return ordered

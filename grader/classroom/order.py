@@ -149,10 +149,11 @@ def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
 
 def _why_again(old: Result, key: Key) -> str:
     parts = changed(old.key, key)
-    if "submission" in parts or "student" in parts:
-        return "changed"
+    # Another version may have computed the other values of the key differently.
     if "grader" in parts:
         return "graded by another version of the grader"
+    if "submission" in parts or "student" in parts:
+        return "changed"
     if "exercise" in parts:
         return "judged with different checks"
     if "ros" in parts:

@@ -18,6 +18,7 @@ from watchfiles import DefaultFilter, watch
 from grader.colcon.rebuild import Rebuild
 from grader.errors import MachineError, UsageError
 from grader.grading.grade import Graded, can_be_explained, explained, grade
+from grader.learner.current import require_current
 from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 
@@ -212,7 +213,7 @@ class Watched:
 
         Raises:
             UsageError: the folder does not contain one package, or its files cannot be read.
-            MachineError: the submission cannot be judged, because of the machine.
+            MachineError: the submission cannot be judged, because of the machine, or because the course was updated.
         """
         try:
             submission = self._open()
@@ -220,6 +221,7 @@ class Watched:
             self._judged = str(error)
             raise
         self._judged = submission.digest
+        require_current(self.exercise)
         opened(submission)
         self._wanted = self._unproved = None
         graded = grade(
@@ -231,6 +233,7 @@ class Watched:
             build=self.rebuild,
             trial=self._next_trial,
         )
+        require_current(self.exercise)
         self._unproved = graded
         return graded
 

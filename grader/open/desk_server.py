@@ -21,6 +21,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocketDisconnect
 
 from grader.common.system_errors import refusal
+from grader.common.updated import START_AGAIN, updated
 from grader.errors import GraderError
 from grader.open.turtle_relay import relay
 from grader.view.guard import admitted
@@ -111,7 +112,8 @@ class DeskServer:
         except Exception as error:
             what = f"{type(error).__name__}: {error}".removesuffix(": ")
             fault = f"Internal error in the grader, not a problem with your work: {what}. Please report the error."
-            return JSONResponse({"problem": refusal(error) or fault}, 500)
+            again = START_AGAIN if await run_in_threadpool(updated) else None
+            return JSONResponse({"problem": again or refusal(error) or fault}, 500)
         return JSONResponse(made)
 
     async def _live(self, socket: WebSocket) -> None:

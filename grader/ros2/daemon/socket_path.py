@@ -11,6 +11,7 @@ import hashlib
 import os
 import socket
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -19,8 +20,8 @@ from grader.common import xdg
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-PROTOCOL = 1
-"""A version number in the name of the socket, so that a command never connects to a daemon of another version."""
+_ANSWERING = ("graph/*.py", "ros2/daemon/server.py")
+"""The modules that determine the content and the form of the daemon's responses."""
 _DECIDE = (
     "FASTDDS_BUILTIN_TRANSPORTS",
     "FASTDDS_DEFAULT_PROFILES_FILE",
@@ -41,10 +42,25 @@ def domain() -> str:
     return os.environ.get("ROS_DOMAIN_ID") or "0"
 
 
+@cache
+def version() -> str:
+    """Return a string that changes with the code of the daemon."""
+    package = Path(__file__).parents[2]
+    whole = hashlib.sha256()
+    for pattern in _ANSWERING:
+        for file in sorted(package.glob(pattern)):
+            whole.update(file.read_bytes())
+    return whole.hexdigest()
+
+
 def name() -> str:
-    """Return the name of the daemon's socket, which is the same for all commands with the same user and settings."""
+    """Return the name of the daemon's socket.
+
+    It is the same for all commands with the same user and settings. After an update of the course, it is another one,
+    since the old daemon would respond as before.
+    """
     network = Path("/proc/self/ns/net").stat().st_ino
-    decisive = [str(PROTOCOL), str(os.getuid()), str(network), domain()]
+    decisive = [version(), str(os.getuid()), str(network), domain()]
     decisive += [f"{variable}={os.environ.get(variable, '')}" for variable in _DECIDE]
     return f"ros2-{hashlib.sha256(chr(0).join(decisive).encode()).hexdigest()[:16]}"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,6 @@ from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 by_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can become another user")
 
@@ -104,3 +104,20 @@ def test_a_folder_that_others_could_have_made_is_not_used(folder: Path, tmp_path
     if wrong == "of another user":
         os.chown(folder, USER, USER)
     assert socket_path.folder() == tmp_path / "cache/grader/daemon"
+
+
+def test_a_daemon_of_another_version_of_the_course_is_not_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = set()
+    package = Path(socket_path.__file__).parents[2]
+    for changed in ("", "graph/snapshot.py", "ros2/daemon/server.py"):
+        for file in ("graph/snapshot.py", "ros2/daemon/server.py", "ros2/daemon/socket_path.py"):
+            copy = tmp_path / file
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes((package / file).read_bytes() + (b"# another version\n" if file == changed else b""))
+        monkeypatch.setattr(socket_path, "__file__", str(tmp_path / "ros2/daemon/socket_path.py"))
+        monkeypatch.setattr(socket_path, "version", socket_path.version.__wrapped__)
+        names.add(socket_path.name())
+        monkeypatch.undo()
+    assert len(names) == 3

@@ -1,0 +1,59 @@
+"""A process finds out that the modules of the grader have changed since it was started."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader import cli
+from grader.common import updated as tested
+
+if TYPE_CHECKING:
+    import pytest
+
+LONG_AGO = 1.0
+
+
+def test_only_a_file_that_was_changed_after_the_start_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tested, "_modules", lambda: [os.__file__, str(tmp_path / "removed.py")])
+    assert not tested.updated()
+    new = tmp_path / "new.py"
+    new.touch()
+    os.utime(new, (LONG_AGO, LONG_AGO))  # as archives do
+    monkeypatch.setattr(tested, "_modules", lambda: [os.__file__, str(new)])
+    assert tested.updated()
+
+
+def test_a_change_after_now_is_not_an_update(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "new.py").touch()
+    monkeypatch.setattr(tested, "_modules", lambda: [str(tmp_path / "new.py")])
+    now = time.time()
+    monkeypatch.setattr(time, "time", lambda: now - 7200.0)  # somebody has set the clock back
+    assert not tested.updated()
+
+
+def test_the_start_is_that_of_the_process() -> None:
+    code = "import time; from grader.common.updated import _start; now = time.time(); print(_start(now), now)"
+    before = time.time()
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    start, now = map(float, done.stdout.split())
+    assert before - 0.02 <= start <= now
+
+
+def test_the_modules_are_those_that_commands_import() -> None:
+    found = {Path(path).relative_to(Path(cli.__file__).parent).as_posix() for path in tested._modules()}
+    assert {"cli.py", "trial/conductor.py", "checks/judge.py"} <= found
+    assert not [path for path in found if path.startswith(("tests/", "benchmarks/"))]
+
+
+def test_an_error_after_an_update_names_the_update(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert cli._explain(KeyError("withdrawn")) is None
+    monkeypatch.setattr(cli, "updated", lambda: True)
+    said = cli._explain(KeyError("withdrawn"))
+    assert said == (
+        "the course was updated while this command was running (KeyError: 'withdrawn'). Type the command again."
+    )
