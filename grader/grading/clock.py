@@ -6,10 +6,11 @@ The rules, in the order in which they are applied:
 2. Without these options, a trial starts in simulated time, in which the grader need not wait and other programs cannot
    disturb the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time
    instead (grader.trial.clues).
-3. A trial in simulated time stops at the first sign that the node may be misjudged, for example: a thread calls sleep,
-   commands arrive while the clock is stopped, or the node never becomes idle (grader.trial.simulated). After such a
-   sign, the trial is repeated in wall time. If several threads kept the node from becoming idle, this may have happened
-   by chance, so the trial is first repeated once in simulated time.
+3. A trial in simulated time stops at the first sign that the node may be misjudged, for example: a thread calls sleep
+   or waits for another process, commands arrive while the clock is stopped, the node would be too slow in wall time, or
+   the node never becomes idle (grader.trial.simulated). After such a sign, the trial is repeated in wall time. If
+   several threads kept the node from becoming idle, this may have happened by chance, so the trial is first repeated
+   once in simulated time.
 4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
    the node did not stop.
 5. A trial in wall time is repeated if it fails, and if other programs or a change of the system time disturbed it.

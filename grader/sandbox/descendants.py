@@ -12,6 +12,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from grader.common.process_stat import has_exited, stat_fields
 from grader.sandbox.usage import family
 
 _MOST_S = 5.0
@@ -40,4 +41,4 @@ def _runs(pid: int) -> bool:
         stat = Path(f"/proc/{pid}/stat").read_bytes()
     except OSError:
         return False
-    return stat.rpartition(b")")[2].split()[0] not in (b"Z", b"X")
+    return not has_exited(stat_fields(stat))

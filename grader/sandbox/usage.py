@@ -78,8 +78,11 @@ class Guard:
         self, pids: Sequence[int], limits: Limits, over: Callable[[str], None], *, in_room: bool = False
     ) -> None:
         self._pids, self._limits, self._over, self._in_room = pids, limits, over, in_room
-        self._worked = [(time.monotonic(), self._worked_so_far_s())]
+        self._first = frozenset(family(*pids))
+        self._worked = [(time.monotonic(), sum(map(cpu_s, self._first)))]
         self._ready: dict[int, float] = {}
+        self._short_s = 0.0
+        self._others = False
         self._waited: dict[int, float] = {}
         self._closed = Event()
         self._thread = Thread(target=self._run, name="guard", daemon=True)
@@ -103,9 +106,18 @@ class Guard:
         """Return the time for which all processes of the cell except `but` have run or waited for a processor (s).
 
         On a crowded machine, a process gets less CPU time, but the total time for which it runs or waits is about the
-        same. Only the first thread of each process is counted.
+        same. Only the first thread of each process is counted. Most processes that live for less than EVERY_S are never
+        observed, so for the processes that were started under the guard, the result is at least the number of those
+        observed in state R, multiplied by the time since the previous observation.
         """
-        return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
+        return max(sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but), self._short_s)
+
+    def has_others(self) -> bool:
+        """Return whether processes that were started under the guard existed at the last observation.
+
+        Exited processes for which nobody has waited do not count.
+        """
+        return self._others
 
     def waited_s(self, *, of: int | None = None) -> float:
         """Return the time for which the cell's processes, or only the process `of`, have waited for a processor (s).
@@ -114,13 +126,14 @@ class Guard:
         """
         return sum(waited_s for pid, waited_s in self._waited.copy().items() if of in (None, pid))
 
-    def _worked_so_far_s(self) -> float:
-        return sum(map(cpu_s, family(*self._pids)))
-
     def _run(self) -> None:
         while not self._closed.wait(EVERY_S):
             processes = list(family(*self._pids))
+            before = self._worked[-1][0]
             self._worked.append((time.monotonic(), sum(map(cpu_s, processes))))
+            states = [_state(process) for process in processes if process not in self._first]
+            self._short_s += states.count("R") * (self._worked[-1][0] - before)
+            self._others = any(state not in ("", "Z", "X") for state in states)
             for process in processes:
                 ran_s, waited_s = _ran_and_waited_s(process)
                 self._ready[process] = max(ran_s + waited_s, self._ready.get(process, 0.0))
@@ -198,6 +211,14 @@ def cpu_s(pid: int) -> float:
         return 0.0
     # utime, stime, cutime and cstime of proc(5). The first value of this list is the state (field 3).
     return sum(map(int, fields[11:15])) * _TICK_S
+
+
+def _state(pid: int) -> str:
+    """Return the state of the first thread of the process (see proc(5)), or "" if the process does not exist."""
+    try:
+        return _read(f"/proc/{pid}/stat").rpartition(")")[2].split(maxsplit=1)[0]
+    except OSError:
+        return ""
 
 
 def _ran_and_waited_s(pid: int) -> tuple[float, float]:

@@ -30,6 +30,7 @@ _MODULES = {
     "select",
     "selectors",
     "signal",
+    "timeit",
 }
 _NAMES = {
     "spin_once",

@@ -99,6 +99,10 @@ class NodeGroup:
         """Return the total time (s) for which the processes started by the nodes ran or waited for a processor."""
         return sum(process.started_ready_s() for process in self.processes)
 
+    def has_started_others(self) -> bool:
+        """Return whether a process that a node started is running, as far as this was observed."""
+        return any(process.has_started_others() for process in self.processes)
+
 
 def _sleeps(pid: int) -> bool:
     """Return whether no thread of a process has run between two observations, or whether the process has exited.

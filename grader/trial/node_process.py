@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.process_stat import has_exited, stat_fields
 from grader.sandbox.usage import Guard
 from grader.trial.launchers import await_launcher
 from grader.trial.recording import Output, ProcessEnd
@@ -150,6 +151,10 @@ class NodeProcess:
         """Return the total time (s) for which the processes started by the node ran or waited for a processor."""
         return self._guard.ready_s(but=self.pid) if self._guard is not None else 0.0
 
+    def has_started_others(self) -> bool:
+        """Return whether a process that the node started is running, as far as this was observed."""
+        return self._guard is not None and self._guard.has_others()
+
     def read_output(self, now_s: float) -> int:
         """Read and store the node's new output with the arrival time `now_s`, and return the number of bytes."""
         return sum(stream.read(now_s) for stream in self._streams)
@@ -244,7 +249,7 @@ class NodeProcess:
             stat = Path(f"/proc/{self.pid}/stat").read_bytes()
         except OSError:
             return True
-        return stat.rpartition(b")")[2].split()[0] in (b"Z", b"X")
+        return has_exited(stat_fields(stat))
 
     def _signal(self, number: int) -> None:
         try:

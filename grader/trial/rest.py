@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.process_stat import EXITED, has_exited, stat_fields
 from grader.trial.wait import HIDDEN, Wait, wait_of
 
 if TYPE_CHECKING:
@@ -186,8 +187,18 @@ class Threads:
         return found
 
     def run_time_s(self) -> float:
-        """Return the CPU time (s) that all threads have used. Threads that have exited do not count."""
-        return sum(ran_s for ran_s, _ in self.times_s().values())
+        """Return the CPU time (s) that the process has used, including threads that have exited.
+
+        If the system does not measure the CPU time of processes, only the observed threads count.
+
+        Raises:
+            GoneError: the process has exited.
+        """
+        self._refresh()
+        try:
+            return time.clock_gettime_ns(~self.pid << 3 | _OF_PROCESS) / 1e9
+        except OSError:
+            return sum(ran_s for ran_s, _ in self.times_s().values())
 
     def run_times_s(self) -> dict[int, float]:
         """Return the CPU time (s) that each thread has used, by thread id, without the threads of Fast DDS."""
@@ -217,12 +228,13 @@ class Threads:
     def _refresh(self) -> int:
         """Find the threads of the process, unless their number is unchanged. Return the state of the main thread."""
         try:
-            fields = _fields(os.pread(self._main, 512, 0))
+            fields = stat_fields(os.pread(self._main, 512, 0))
         except ProcessLookupError:
             raise GoneError from None
-        state = fields[0][0]
-        if state in b"ZX":
+        if has_exited(fields):
             raise GoneError
+        # A main thread that has exited before the other threads never runs again.
+        state = _SLEEPING if fields[0] in EXITED else fields[0][0]
         if fields[17] == self._count and self._files:
             return state
         try:
@@ -273,8 +285,3 @@ def _read(path: str) -> str:
 def _state(stat: bytes) -> int:
     # A thread can have any name of up to 15 bytes, even ") R". The kernel's fields follow the last parenthesis.
     return stat[stat.rindex(b")") + 2]
-
-
-def _fields(stat: bytes) -> list[bytes]:
-    # The fields from the state, [0], to the number of threads, [17].
-    return stat[stat.rindex(b")") + 2 :].split(b" ", 18)

@@ -21,7 +21,7 @@ from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.simulation import Simulation
-from grader.trial.wait import HIDDEN
+from grader.trial.wait import HIDDEN, doubt
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
@@ -37,9 +37,13 @@ QUIET_S = 0.02
 leave gaps of this length, so it is less than half the time between two announcements (fastdds.xml)."""
 WAKE_S = 1.0
 """The maximum time to wait until each node has reacted to /clock at time 0 (s)."""
-MOST_CPU = 2.0
-"""If the CPU time of all nodes together exceeds this multiple of the trial's duration, the nodes would also be too slow
-in wall time. Therefore, their result must come from a trial in wall time."""
+MOST_CPU_IN_ALL = 2.0
+"""A trial that does not stop at a doubt ends when all nodes together have used this multiple of its duration as CPU
+time."""
+MOST_CPU = 0.7
+"""If a node computes for longer than this share of the time between two checks (GRAPH_EVERY), it would be late in wall
+time. Therefore, its result must come from a trial in wall time. For comparison, the solutions compute for at most 0.3
+of the time."""
 GRAPH_EVERY = 31
 """The number of frames between two checks of the graph and of the DDS events (half a second)."""
 OWN_EVERY = 5
@@ -93,6 +97,7 @@ class SimulatedTrial(Simulation):
             self.lap("start")
             self._handshake()
             self.lap("discovery")
+            worked_s = self._node.run_time_s()
             for frame in range(1, round(duration_s / FRAME_S) + 1):
                 self.tick(frame * FRAME_S)
                 self._settle()
@@ -103,8 +108,10 @@ class SimulatedTrial(Simulation):
                     self.spin()
                     self.follow_graph()
                     self.recorder.snapshot()
-                    if self._node.run_time_s() > MOST_CPU * duration_s:
-                        self._doubt("the node uses too much CPU time")
+                    before_s, worked_s = worked_s, self._node.run_time_s()
+                    if worked_s - before_s > MOST_CPU * GRAPH_EVERY * FRAME_S * len(self.node.pids):
+                        self._doubt("the node needs so much CPU time that it would be late in wall time")
+                    if worked_s > MOST_CPU_IN_ALL * duration_s:
                         break
                 if frame % WAITS_EVERY == 0:
                     self._doubt_sleepers()
@@ -258,12 +265,11 @@ class SimulatedTrial(Simulation):
         waits = self._node.waits()
         if any(wait.call == HIDDEN for wait in waits):
             self._doubt("the node hides what it waits for")
-        timed = [wait for wait in waits if wait.timed]
-        sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
-        if sleeping and not self._is_ending():
-            self._doubt("the node sleeps in wall time")
-        elif not sleeping and len(timed) > len(self.node.pids) and not self._is_ending():
-            self._doubt("the node waits for wall time")
+        why = doubt(waits, len(self.node.pids))
+        if why is None and self.node.has_started_others():
+            why = "the node has started another process, which may need wall time"
+        if why is not None and not self._is_ending():
+            self._doubt(why)
 
     def _await_leaver(self) -> None:
         """If a node has just stopped following /clock, wait for its process to exit, which takes wall time.

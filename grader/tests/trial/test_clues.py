@@ -44,6 +44,7 @@ def test_a_node_with_a_timer_gives_no_clue() -> None:
         ("rclpy.experimental.EventsExecutor().spin()", "EventsExecutor"),
         ("executor = EventsExecutor()", "EventsExecutor"),
         ("from select import select\nselect([], [], [], 0.5)", "select.select"),
+        ("from timeit import default_timer as now\nstart = now()", "timeit.default_timer"),
     ],
 )
 def test_what_follows_wall_time_is_found(line: str, name: str) -> None:

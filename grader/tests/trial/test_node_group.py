@@ -265,7 +265,7 @@ def test_the_clock_stands_still_while_a_node_that_has_left_exits() -> None:
 
 
 def test_a_child_in_a_session_of_its_own_ends_with_a_trial_without_a_sandbox() -> None:
-    recording = trial_of(Inputs(), 1.0, in_cell=False, leaves=LEAVES_A_CHILD)
+    recording = trial_of(Inputs(), 1.0, clock="wall", in_cell=False, leaves=LEAVES_A_CHILD)
     assert recording.end.by == "SIGINT"
     until_gone(int(recording.stdout.text.split()[0]))
 

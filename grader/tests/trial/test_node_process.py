@@ -3,9 +3,11 @@ from __future__ import annotations
 import errno
 import fcntl
 import os
+import sys
 import time
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
@@ -21,7 +23,6 @@ from grader.trial.node_process import FULL, PIPE, NodeProcess, Stream, enlarge
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
 SLOW = r"""printf '\0ready\n'; read order; trap 'sleep 1; exit 0' INT; echo waits; while :; do sleep 0.05; done"""
@@ -29,6 +30,12 @@ SLOW = r"""printf '\0ready\n'; read order; trap 'sleep 1; exit 0' INT; echo wait
 QUICK = SLOW.replace("sleep 1; ", "")
 STUCK = SLOW.replace("sleep 1; exit 0", "while :; do sleep 0.05; done")
 """A node that does not stop on Ctrl-C."""
+ONLY_MAIN_EXITS = r"""
+import ctypes, threading, time
+print("\0ready", flush=True)
+threading.Thread(target=time.sleep, args=(600,)).start()
+ctypes.CDLL(None).pthread_exit(None)
+"""
 
 
 @pytest.fixture
@@ -213,6 +220,19 @@ def _run(group: NodeGroup) -> None:
 
 def _has_written(process: NodeProcess) -> bool:
     return process.read_output(0.0) > 0
+
+
+def test_nobody_waits_for_the_exit_code_of_a_node_whose_main_thread_alone_has_exited(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with NodeProcess(LauncherProcess([sys.executable, "-c", ONLY_MAIN_EXITS]), Limits()) as process:
+        process.await_ready()
+        process.start({}, b"")
+        until(lambda: Path(f"/proc/{process.pid}/stat").read_text().split()[2] == "Z")
+        monkeypatch.setattr(LauncherProcess, "wait", lambda *_: pytest.fail("waited for the exit code"))
+        process.scenario_is_over()
+        assert not process.ended()
+        assert not process.ended_itself
 
 
 def test_the_error_of_a_launcher_that_exits_silently_is_not_empty() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.common.process_stat import has_exited, stat_fields
 from grader.tests.descriptors import descriptors
 from grader.tests.trial.program import python
 from grader.tests.waiting import until
@@ -54,12 +55,13 @@ def test_the_work_of_every_thread_of_another_process_counts_even_of_one_that_has
     with python(code) as process, closing(Threads(process.pid, receives)) as threads:
         assert process.stdin is not None
         assert process.stdout is not None
-        before = threads.cpu_ns()
+        before, before_s = threads.cpu_ns(), threads.run_time_s()
         assert len(before) == 1
         process.stdin.write("\n")
         process.stdin.flush()
         assert process.stdout.readline() == "worked\n"
         assert threads.cpu_ns() > before
+        assert threads.run_time_s() > before_s
 
 
 def test_of_this_process_only_the_observed_threads_count() -> None:
@@ -162,6 +164,24 @@ def test_the_end_of_a_process_is_reported() -> None:
         assert threads.cpu_ns() != threads.cpu_ns()
         with pytest.raises(GoneError):
             threads.look()
+        with pytest.raises(GoneError):
+            threads.asleep()
+
+
+def test_a_process_whose_main_thread_has_exited_rests_and_ends_with_its_last_thread() -> None:
+    code = (
+        "import ctypes, threading\nprint('ready', flush=True)\n"
+        "threading.Thread(target=input).start()\nctypes.CDLL(None).pthread_exit(None)"
+    )
+    with python(code) as process, closing(Threads(process.pid)) as threads:
+        until(lambda: Path(f"/proc/{process.pid}/stat").read_text().split()[2] == "Z")
+        until_asleep(threads)
+        assert threads.asleep()
+        assert threads.main_asleep()
+        assert not has_exited(stat_fields(Path(f"/proc/{process.pid}/stat").read_bytes()))
+        process.kill()
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+        assert has_exited(stat_fields(Path(f"/proc/{process.pid}/stat").read_bytes()))
         with pytest.raises(GoneError):
             threads.asleep()
 
