@@ -89,7 +89,24 @@ def _details(report: Any) -> dict[str, Any]:  # noqa: ANN401 - pytest's
     crash = getattr(report.longrepr, "reprcrash", None)
     if crash is None:
         return {"message": str(report.longrepr)[-1500:], "file": "", "line": 0}
-    return {"message": str(crash.message)[:1500], "file": str(crash.path), "line": int(crash.lineno)}
+    file, line = _last_of_tests(report.longrepr) or (str(crash.path), int(crash.lineno))
+    return {"message": str(crash.message)[:1500], "file": file, "line": line}
+
+
+def _last_of_tests(shown: Any) -> tuple[str, int] | None:  # noqa: ANN401 - pytest's
+    """Return the last line of the traceback that is in a file below the current folder, but not in the node, or None.
+
+    The exception may have been raised in a library that the test has called.
+    """
+    folder = Path.cwd()
+    for entry in reversed(getattr(getattr(shown, "reprtraceback", None), "reprentries", [])):
+        place = getattr(entry, "reprfileloc", None)
+        if place is None:
+            continue
+        path = folder / str(place.path)
+        if folder in path.parents and ("test" in path.name or path.parent.name != folder.name):
+            return str(path), int(place.lineno)
+    return None
 
 
 def main() -> None:

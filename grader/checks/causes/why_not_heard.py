@@ -106,6 +106,8 @@ def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behavio
             "spin after each step."
         )
         return Cause("bench-clock-stands", text, _place(code, run, OVERRIDE))
+    if not events.clock_s and _uses(code, OVERRIDE):
+        return Cause("bench-clock-stands", OTHER_CLOCK, _place(code, run, OVERRIDE))
     text = (
         f"A pose arrived when the node's clock showed {events.clock_s:g} s, but the callback of its timer has not run. "
         f"The callback is due after a whole period: advance the clock in steps of {right.period_s:g} s, and spin after "
@@ -115,6 +117,10 @@ def _not_called(events: NodeEvents, run: NodeRun, code: TestCode, right: Behavio
 
 
 OVERRIDE = "set_ros_time_override"
+OTHER_CLOCK = (
+    f"When the last pose arrived, the node's clock showed 0 s, although the tests contain {OVERRIDE}. "
+    "Do the tests call this method, and on the clock of the node under test?"
+)
 NOT_SPUN = (
     "The node has received no pose, and the callback of its timer has not run. Is the node in the executor, and "
     "does the bench call spin_once after each step of the clock?"

@@ -10,6 +10,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.weak_tests import always_false
 from grader.checks.causes.why_hung import waits_for_a_person, why_hung
 from grader.checks.causes.why_not_collected import why_not_collected
+from grader.checks.causes.why_test_import import why_test_import
 from grader.checks.causes.why_test_raised import why_test_raised
 from grader.common.words import shorten
 from grader.submission.where import Where
@@ -49,10 +50,10 @@ def place_of(run: NodeRun, code: TestCode) -> Where | None:
     return next((Where(module.file) for module in code.modules if module.file == name), None)
 
 
-def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
+def why_rejected(run: NodeRun, code: TestCode, numbers: str = "", node: tuple[str, str] | None = None) -> Cause:
     """Return the reason why this run of the tests on the correct node did not pass.
 
-    `numbers` are the student's own numbers, as in "speed_m_s = 1.1".
+    `node` is the module and the class of the node. `numbers` are the student's own numbers, as in "speed_m_s = 1.1".
     """
     where = place_of(run, code)
     if run.over:
@@ -61,7 +62,7 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "") -> Cause:
     if known is not None:
         return known
     if run.outcome == "import":
-        return Cause("test-import", shorten(last_error(run.message), 150), where)
+        return why_test_import(last_error(run.message), code, node, where)
     false = always_false(code) or why_test_raised(run.message, code, where)
     if false is not None:
         return false
@@ -109,6 +110,9 @@ def _known(message: str, where: Where | None) -> Cause | None:
     if "fixture function has more than one 'yield'" in message:
         text = "A fixture has one yield. The lines before it prepare the object, and the lines after it clean up."
         return Cause("fixture-missing", text, where)
+    if "async def functions are not natively supported" in message:
+        text = "pytest does not run functions that are defined with async def. Write def."
+        return Cause("test-function-name", text, where)
     field = FIELD.search(message)
     if field is not None:
         text = f"The field {shorten(field['name'], 60)} is a float. Write the number with a decimal point."
@@ -143,6 +147,15 @@ def _of_ros(message: str, where: Where | None) -> Cause | None:
     if "Failed to create subscription" in message:
         text = "A topic has one type. Does the test subscribe with the type with which the node publishes?"
         return Cause("second-type", text, where)
+    if "Failed to create publisher" in message:
+        text = "A topic has one type. Does the test publish with the type to which the node subscribes?"
+        return Cause("second-type", text, where)
+    if "type must be an instance of '<enum 'Type'>'" in message:
+        text = 'The second argument of Parameter is the type. Name the value: Parameter("use_sim_time", value=True).'
+        return Cause("rejects-right", text, where)
+    if "'Parameter' object is not iterable" in message:
+        text = "set_parameters takes a list. Write brackets around the parameter: set_parameters([Parameter(...)])."
+        return Cause("rejects-right", text, where)
     style = STYLE.search(message)
     if style is not None:
         text = (

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.hidden_failures import left_out, swallowed
+from grader.checks.causes.syntax import unreadable_finding
 from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_message, wide_tolerance
 from grader.checks.causes.weak_tests import in_a_loop, named_twice, why_without_assert, without_assert, without_effect
 from grader.checks.causes.why_no_test import why_no_test
 from grader.checks.causes.why_not_collected import of_parametrize
 from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
 from grader.checks.causes.why_rejected import FIXTURE, last_error, own_copy, why_rejected, why_wrong_tests
+from grader.checks.causes.why_test_import import shown_error
 from grader.checks.kind import Kind, NoParams, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.own_values import drawn_numbers
@@ -69,8 +71,11 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         cause = Cause("unsteady-tests", UNSTEADY, why_rejected(rejected[0], code).where)
         observed = f"The tests pass on the correct node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
         return failed(observed, expected, cause)
+    for module in code.modules:
+        if module.unreadable is not None and module.file == rejected[0].test:
+            return unreadable_finding(module.file, module.unreadable, evidence.submission.files[module.file])
     known = why_wrong_tests(rejected[0], code, spec.name) or why_not_heard(rejected[0], code, spec.right)
-    cause = known or why_rejected(rejected[0], code, _numbers(evidence))
+    cause = known or why_rejected(rejected[0], code, _numbers(evidence), (spec.module, spec.name))
     return failed(_observed(rejected[0]), expected, cause)
 
 
@@ -91,8 +96,11 @@ def _observed(run: NodeRun) -> str:
         return "The tests did not finish in time on the correct node."
     name = shorten(run.test.rpartition("::")[2] or run.test, 60)
     if run.outcome == "import":
-        collects = "pytest cannot collect the tests in {file}." if of_parametrize(run) else "{file} cannot be imported."
-        return collects.format(file=shorten(run.test, 60))
+        file = shorten(run.test, 60)
+        if of_parametrize(run):
+            return f"pytest cannot collect the tests in {file}."
+        error = shown_error(last_error(run.message))
+        return f"{file} cannot be imported: {error}." if error else f"{file} cannot be imported."
     if not name:
         return f"The tests on the correct node ended with exit code {run.exit_code}."
     # pytest explains the values of a comparison in lines that begin with "+". They would hide the cause.

@@ -74,6 +74,13 @@ def cause(message: str, events: NodeEvents | None, source: str = BENCH) -> str:
             "bench-clock-stands test/test_it.py:8",
             "the node's clock showed 0.1 s, but the callback",
         ),
+        (
+            NONE,
+            replace(STOOD, first_s=0.0, clock_s=0.0),
+            STOOD,
+            "bench-clock-stands test/test_it.py:8",
+            "Do the tests call this method, and on the clock of the node under test?",
+        ),
         (NONE, STOOD, RIGHT, "bench-clock-stands", "The callback is due after a whole period: advance the clock"),
         (NONE, NO_POSE, RIGHT, "bench-no-pose test/test_it.py:4", "but no pose had arrived on /turtle1/pose. Does"),
         (

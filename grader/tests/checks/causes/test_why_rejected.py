@@ -53,6 +53,26 @@ def cause(message: str, *, over: bool = False) -> str:
             "A topic has one type. Does the test subscribe with the type with which the node publishes?",
         ),
         (
+            "rclpy._rclpy_pybind11.RCLError: Failed to create publisher: create_publisher() called for existing topic",
+            "assert 4 == 3",
+            "A topic has one type. Does the test publish with the type to which the node subscribes?",
+        ),
+        (
+            "TypeError: type must be an instance of '<enum 'Type'>'",
+            "assert 4 == 3",
+            'The second argument of Parameter is the type. Name the value: Parameter("use_sim_time", value=True).',
+        ),
+        (
+            "TypeError: 'Parameter' object is not iterable",
+            "assert 4 == 3",
+            "set_parameters takes a list. Write brackets around the parameter: set_parameters([Parameter(...)]).",
+        ),
+        (
+            "Failed: async def functions are not natively supported.",
+            "Failed: def functions",
+            "pytest does not run functions that are defined with async def. Write def.",
+        ),
+        (
             "E   fixture 'bench' not found",
             "E   AssertionError: not found",
             "No fixture is named bench. Does a function with this name have the decorator pytest.fixture?",

@@ -262,3 +262,11 @@ def test_a_test_that_was_skipped_on_the_broken_node_is_reported() -> None:
 def test_a_constant_in_one_of_two_tests_is_reported() -> None:
     body = "    assert True\n\n\ndef test_other(bench):"
     assert "assert True never fails." in why_accepted("rate", body)
+
+
+def test_a_syntax_error_in_the_tests_has_its_line_and_its_cause() -> None:
+    run = dataclasses.replace(BAD, test=TESTS, outcome="import", message="SyntaxError: expected ':'", line=0)
+    finding = PASS.check(given(*[run] * 3, source="import os\n\n\ndef test_it(bench)\n    assert bench\n"), NoParams())
+    assert finding.diagnosis == "colon-missing"
+    assert finding.where is not None
+    assert (finding.where.file, finding.where.line) == (TESTS, 4)
