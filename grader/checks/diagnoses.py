@@ -228,6 +228,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "assert-vacuous": "an assert holds on every node, or nearly every node",
         "rejects-right": "a test fails on the correct node",
         "bench-wall-time": "the tests advance the clock of a node that uses the system time",
+        "bench-no-node": "the tests do not create the node under test",
         "bench-not-spun": "no callback of the node under test runs, because no executor spins the node",
         "bench-clock-stands": "the tests do not advance the node's clock, or not after the pose",
         "bench-clock-not-started": "the tests send a pose before the node's clock starts, so one command is missing",

@@ -211,6 +211,7 @@ Diagnosis = Literal[
     "assert-vacuous",
     "rejects-right",
     "bench-wall-time",
+    "bench-no-node",
     "bench-not-spun",
     "bench-clock-stands",
     "bench-clock-not-started",

@@ -49,6 +49,9 @@ def left_out(run: NodeRun, code: TestCode) -> Cause | None:
     if run.skipped:
         text = f"pytest ignores the failure of {count(run.skipped, 'test')}, because of a mark such as skip or xfail."
         return Cause("test-left-out", text, where)
+    if run.test:
+        text = "A test failed on this node, but pytest ended with exit code 0. Does conftest.py change the result?"
+        return Cause("test-left-out", text)
     if 0 < run.collected < len(code.tests):
         text = (
             f"pytest runs only {run.collected} of the {len(code.tests)} tests in the files. Options in setup.cfg or "

@@ -1,4 +1,4 @@
-"""Explain why pytest cannot collect the tests of a file that Python can import: parametrize does not fit the test."""
+"""Explain why pytest cannot collect the tests of a file that Python can import, mostly because of parametrize."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode
     from grader.testbench.result import NodeRun
 
-OF_PARAMETRIZE = re.compile(r"parametrize|function uses no (?:argument|fixture) ")
-"""Matches pytest's messages about the arguments of parametrize."""
+YIELDS = "'yield' keyword is allowed in fixtures, but not in tests"
+OF_COLLECTION = re.compile(rf"parametrize|function uses no (?:argument|fixture) |{YIELDS}")
+"""Matches pytest's messages about a test that it cannot collect, although the file can be imported."""
 UNUSED = re.compile(r"function uses no (?:argument|fixture) '(?P<name>\w+)'")
+YIELDING = re.compile(r"not in tests \((?P<name>\w+)\)")
 FUNCTION = re.compile(r"\.py::(?:\w+::)*(?P<name>\w+)")
 FORM = (
     "parametrize takes a string with the names, and a list with one tuple of values for each run, as in "
@@ -27,15 +29,21 @@ FORM = (
 )
 
 
-def of_parametrize(run: NodeRun) -> bool:
-    """Return whether the tests of a file could not be collected because of the arguments of parametrize."""
-    return run.outcome == "import" and OF_PARAMETRIZE.search(run.message) is not None
+def of_collection(run: NodeRun) -> bool:
+    """Return whether pytest could import a file but could not collect its tests."""
+    return run.outcome == "import" and OF_COLLECTION.search(run.message) is not None
 
 
 def why_not_collected(run: NodeRun, code: TestCode) -> Cause | None:
-    """Return the cause if the arguments of parametrize do not fit the test, else None."""
-    if not of_parametrize(run) or "did you mean" in run.message:
+    """Return the cause if the arguments of parametrize do not fit a test, or if a test has a yield, else None."""
+    if not of_collection(run) or "did you mean" in run.message:
         return None
+    if YIELDS in run.message:
+        yielding = YIELDING.search(run.message)
+        name = yielding["name"] if yielding else ""
+        text = f"{shorten(name, 60) or 'A test'} has a yield. Only a fixture has one."
+        where = next((each.where for each in code.tests if each.node.name == name), None)
+        return Cause("rejects-right", text, where)
     function = FUNCTION.search(run.message)
     places = dict(reversed(list(_parametrized(code))))
     first = next(reversed(places.values()), None)

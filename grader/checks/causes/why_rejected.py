@@ -36,6 +36,8 @@ STYLE = re.compile(r"No module named '(?P<name>ament_(?:copyright|flake8|pep257|
 """Matches the message about a missing package that checks code style. Test files of `ros2 pkg create` import three."""
 IDENTITY = re.compile(r"(?:E\s+)?(?:AssertionError: )?assert (?P<left>\S+) is (?!not\b)(?P<right>\S+)")
 """Matches pytest's message about an assert with `is`."""
+USAGE_ERROR = 4
+"""The exit code of pytest if an option is wrong, or if conftest.py cannot be imported."""
 UNCALLED = re.compile(r"assert [^\n]*<(?:bound method|function|built-in (?:function|method)) (?P<name>[\w.]+)")
 """Matches pytest's message about an assert that compares a function with something."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
@@ -58,6 +60,12 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "", node: tuple[st
     where = place_of(run, code)
     if run.over:
         return why_hung(code, where)
+    if run.exit_code == USAGE_ERROR and not run.test:
+        text = (
+            "pytest refuses an option in pytest.ini, setup.cfg or pyproject.toml, or cannot import conftest.py. The "
+            "grader runs pytest without plugins, so it has no options such as --cov."
+        )
+        return Cause("rejects-right", text, _configuration(code))
     known = waits_for_a_person(run.message, code) or why_not_collected(run, code) or _known(run.message, where)
     if known is not None:
         return known
@@ -70,6 +78,11 @@ def why_rejected(run: NodeRun, code: TestCode, numbers: str = "", node: tuple[st
     if numbers:
         text = f"Compare the test with the promises, and with your numbers: {numbers}. Does the node get enough time?"
     return Cause("rejects-right", text, where)
+
+
+def _configuration(code: TestCode) -> Where | None:
+    """Return the first conftest.py, or None."""
+    return next((Where(each.file) for each in code.modules if each.file.rpartition("/")[2] == "conftest.py"), None)
 
 
 def why_wrong_tests(run: NodeRun, code: TestCode, name: str) -> Cause | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,9 +11,16 @@ from grader.checks.cause import Cause
 from grader.checks.causes.hidden_failures import left_out, swallowed
 from grader.checks.causes.syntax import unreadable_finding
 from grader.checks.causes.vacuous_asserts import vacuous_assert, value_as_message, wide_tolerance
-from grader.checks.causes.weak_tests import in_a_loop, named_twice, why_without_assert, without_assert, without_effect
+from grader.checks.causes.weak_tests import (
+    in_a_loop,
+    last_name,
+    named_twice,
+    why_without_assert,
+    without_assert,
+    without_effect,
+)
 from grader.checks.causes.why_no_test import why_no_test
-from grader.checks.causes.why_not_collected import of_parametrize
+from grader.checks.causes.why_not_collected import of_collection
 from grader.checks.causes.why_not_heard import why_not_called, why_not_heard
 from grader.checks.causes.why_rejected import FIXTURE, last_error, own_copy, why_rejected, why_wrong_tests
 from grader.checks.causes.why_test_import import shown_error
@@ -97,7 +105,7 @@ def _observed(run: NodeRun) -> str:
     name = shorten(run.test.rpartition("::")[2] or run.test, 60)
     if run.outcome == "import":
         file = shorten(run.test, 60)
-        if of_parametrize(run):
+        if of_collection(run):
             return f"pytest cannot collect the tests in {file}."
         error = shown_error(last_error(run.message))
         return f"{file} cannot be imported: {error}." if error else f"{file} cannot be imported."
@@ -150,6 +158,7 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode, run: Node
     assert spec is not None
     cause = (
         own_copy(code, spec.name)
+        or _no_node(run, code, spec.name)
         or named_twice(code)
         or left_out(run, code)
         or swallowed(code)
@@ -164,6 +173,16 @@ def _why_accepted(evidence: Evidence, params: Catches, code: TestCode, run: Node
     # No line is wrong: a test is missing.
     where = Where(code.tests[0].module.file) if code.tests else None
     return cause or Cause("accepts-broken", params.cause, where)
+
+
+def _no_node(run: NodeRun, code: TestCode, name: str) -> Cause | None:
+    """Return the cause if the tests never create an object of the node's class, else None."""
+    calls = (node.func for module in code.modules for node in module.nodes if isinstance(node, ast.Call))
+    if run.events is not None or any(last_name(each) == name for each in calls):
+        return None
+    where = Where(code.tests[0].module.file) if code.tests else None
+    text = f"The tests never create an object of the class {name}, so they do not test the node."
+    return Cause("bench-no-node", text, where)
 
 
 def _asserts_a_constant(empty: tuple[TestFunction, ...]) -> Cause | None:

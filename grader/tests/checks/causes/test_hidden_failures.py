@@ -97,6 +97,11 @@ MARKED = "import pytest\n\n\n@pytest.mark.xfail\n"
     [
         (NodeRun("rate", 0, collected=2, passed=1, skipped=1), "pytest ignores the failure of 1 test, because of", 4),
         (NodeRun("rate", 0, collected=2, passed=2), None, None),
+        (
+            NodeRun("rate", 0, collected=2, passed=1, test="test_it"),
+            "A test failed on this node, but pytest ended",
+            None,
+        ),
         (NodeRun("rate", 0, collected=1, passed=1), "pytest runs only 1 of the 2 tests in the files.", None),
     ],
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_not_collected import of_parametrize, why_not_collected
+from grader.checks.causes.why_not_collected import of_collection, why_not_collected
 from grader.submission.pytest_files import read_test_code
 from grader.testbench.result import NodeRun
 
@@ -23,13 +23,14 @@ CODE = read_test_code({FILE: f"import pytest\n{ONE.format('it')}{ONE.format('oth
             7,
         ),
         ("TypeError: Metafunc.parametrize() takes 3 positional arguments but 6", "parametrize takes a string with", 2),
+        ("'yield' keyword is allowed in fixtures, but not in tests (test_other)", "test_other has a yield. Only a", 8),
         ("Failed: Unknown 'parameterize' mark, did you mean 'parametrize'?", None, None),
         ("NameError: name 'fixture' is not defined", None, None),
     ],
 )
-def test_the_arguments_of_parametrize_are_explained(message: str, words: str | None, line: int | None) -> None:
+def test_the_arguments_of_collection_are_explained(message: str, words: str | None, line: int | None) -> None:
     run = NodeRun("", 2, test=FILE, outcome="import", message=message)
     cause = why_not_collected(run, CODE)
     assert (cause and cause.where and cause.where.line) == line
     assert (cause is not None and words is not None and cause.text.startswith(words)) == (words is not None)
-    assert of_parametrize(run) == ("parametrize" in message or "uses no" in message)
+    assert of_collection(run) == (not message.startswith("NameError"))

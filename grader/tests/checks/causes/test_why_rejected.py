@@ -146,3 +146,9 @@ def test_a_class_of_the_tests_is_not_the_node(name: str, *, told: bool) -> None:
     words = "The tests define their own class WallGuard, so they do not test the node. Import the class."
     for found in (own_copy(code, "WallGuard"), why_wrong_tests(run, code, "WallGuard")):
         assert (found is not None and found.text == words) == told
+
+
+@pytest.mark.parametrize(("exit_code", "name", "refuses"), [(4, "", True), (4, FILE, False), (3, "", False)])
+def test_an_option_that_pytest_refuses_is_not_a_wrong_test(exit_code: int, name: str, *, refuses: bool) -> None:
+    text = why_rejected(NodeRun("", exit_code, test=name), CODE).text
+    assert text.startswith("pytest refuses an option in pytest.ini, setup.cfg or pyproject.toml") == refuses

@@ -217,7 +217,7 @@ def test_the_address_of_an_object_is_not_in_the_report() -> None:
 def why_accepted(node: str, body: str, run: NodeRun = GOOD) -> str:
     """Return what the student reads about a broken node of the course that the test with this body accepts."""
     check = next(check for check in find_exercise("12-tests").checks if check.id == node)
-    source = f"import pytest\n\n\ndef test_it(bench):\n{body}\n    assert bench.count() == 10\n"
+    source = f"bench = WallGuard()\n\n\ndef test_it(bench):\n{body}\n    assert bench.count() == 10\n"
     return told(CATCHES.judge(given(GOOD, dataclasses.replace(run, node=node), source=source), check.params))
 
 
@@ -270,3 +270,16 @@ def test_a_syntax_error_in_the_tests_has_its_line_and_its_cause() -> None:
     assert finding.diagnosis == "colon-missing"
     assert finding.where is not None
     assert (finding.where.file, finding.where.line) == (TESTS, 4)
+
+
+def test_tests_that_never_create_the_node_are_named() -> None:
+    check = next(check for check in find_exercise("12-tests").checks if check.id == "speed")
+    run = dataclasses.replace(GOOD, node="speed")
+    words = "The tests never create an object of the class WallGuard, so they do not test the node."
+    for first, events, found_ in (
+        ("", None, True),
+        ("guard = WallGuard()\n", None, False),
+        ("", NodeEvents(calls=1, all_calls=1), False),
+    ):
+        evidence = given(GOOD, dataclasses.replace(run, events=events), source=f"{first}{SOURCE}")
+        assert (words in told(CATCHES.judge(evidence, check.params))) == found_
