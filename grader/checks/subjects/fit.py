@@ -34,6 +34,8 @@ PARAMETERS = re.compile(r"TypeError: \w+\(\) (?:takes|missing) ")
 """Matches Python's message about a call with the wrong number of arguments."""
 OPTION = re.compile(r"error: the following arguments are required: (?P<name>--?[\w-]+)")
 """Matches the message of argparse about a missing option."""
+SLIPS = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "NameError", "UnboundLocalError"})
+"""Exceptions that nobody raises on purpose to reject points."""
 SIGMAS = 6.0
 """The maximum error that noise may cause in a correct result, in standard deviations of the best fit."""
 
@@ -240,6 +242,8 @@ def refuses(evidence: Evidence, params: RefusedCall) -> Finding:
     if called.ended == "exit 0":
         return failed(f"{name} returned {_form(called)}.", expected, why_no_error(evidence))
     if crash is not None and called.kind:
+        if crash.error in SLIPS:
+            return crash_finding(evidence, crash, f"{raiser} raised {crash.observed}.", expected)
         cause = "The caller expects ValueError, and cannot know what another exception means."
         cause = "" if raiser != name else cause
         return failed(f"{raiser} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))

@@ -71,3 +71,11 @@ def test_an_import_that_raises_a_value_error_refuses_nothing() -> None:
     error = Called("too-few", "exit 1", stderr=f"{IMPORT}ValueError: no", kind="ValueError Exception")
     assert "The import of fit_circle raised ValueError: no." in told(judged("too-few", error))
     assert "The caller expects ValueError" not in told(judged("too-few", error))
+
+
+def test_a_name_that_does_not_exist_rejects_no_points() -> None:
+    """The exception is a mistake in the code, so the sentence about the caller would be misleading."""
+    finding = judged("too-few", raised("too-few", "NameError: name 'np' is not defined", "NameError Exception"))
+    assert finding.observed == "fit_circle raised NameError: name 'np' is not defined."
+    assert "The caller expects ValueError" not in told(finding)
+    assert finding.diagnosis != "other-error"
