@@ -72,8 +72,8 @@ class PointsInput:
 class BagInput:
     """One run of a program that takes the path of a bag as its argument: "bags/" and the id.
 
-    The bag contains poses of turtle1 on an arc, at `rate_hz`, and `commands` velocity commands in the same period. If
-    `poses` is false, the bag contains only the commands.
+    The bag contains poses of turtle1 on an arc, at a mean rate of `rate_hz`, and `commands` velocity commands in the
+    same period. If `poses` is false, the bag contains only the commands.
     """
 
     id: str

@@ -23,6 +23,8 @@ _POSE = struct.Struct("<xBxx5f")
 _TWIST = struct.Struct("<xBxx6d")
 _LITTLE_ENDIAN = 1
 """The second byte of serialized data whose byte order is little-endian."""
+_LATE = 0.25
+"""The delay of every second pose, as a fraction of the period."""
 _SPEED_M_S = 1.0
 
 
@@ -80,7 +82,7 @@ def _messages(bag: BagInput, seed: int) -> list[Message]:
     """Return the poses and the commands in chronological order. The time stamp of the first pose is 1 s."""
     x, y = bag.arc.points(bag.id, seed)
     messages = [
-        _message("/turtle1/pose", "turtlesim/msg/Pose", 1.0 + index / bag.rate_hz, _POSE, *values, 0.0, _SPEED_M_S, 0.0)
+        _message("/turtle1/pose", "turtlesim/msg/Pose", _stamp_s(index, bag), _POSE, *values, 0.0, _SPEED_M_S, 0.0)
         for index, values in enumerate(zip(x.tolist(), y.tolist(), strict=True) if bag.poses else ())
     ]
     last_s = max(bag.arc.count - 1, 1) / bag.rate_hz
@@ -100,6 +102,16 @@ def _messages(bag: BagInput, seed: int) -> list[Message]:
         for index in range(bag.commands)
     ]
     return sorted(messages, key=lambda message: message.t_s)
+
+
+def _stamp_s(index: int, bag: BagInput) -> float:
+    """Return the time stamp of a pose.
+
+    Every second pose is late, as in a recording, but not the last one. So the mean rate is `rate_hz`, but the interval
+    between two poses does not show it.
+    """
+    late = _LATE if index % 2 and index < bag.arc.count - 1 else 0.0
+    return 1.0 + (index + late) / bag.rate_hz
 
 
 def _message(topic: str, kind: str, t_s: float, form: struct.Struct, *values: float) -> Message:
