@@ -18,7 +18,7 @@ from grader.common.exiting import run_and_exit
 from grader.common.interpreter import clean_own
 from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
-from grader.common.own_process import prepare
+from grader.common.own_process import prepare, require_own_environment
 from grader.common.standard_streams import make_usable
 from grader.common.terminal_text import say
 from grader.common.updated import updated
@@ -230,6 +230,7 @@ def _run() -> None:
     make_usable()
     prepare()
     protect_output()
+    require_own_environment()
     words = sys.argv[1:]
     if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)
         from typer.completion import completion_init  # type: ignore[attr-defined]
