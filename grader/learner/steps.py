@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 PART_ONE, PART_TWO = "Part one: topics", "Part two: beyond topics"
 FIRST_OF_PART_TWO = "08"
+_OTHER_SHELLS = ("csh", "elvish", "fish", "nu", "pwsh", "tcsh", "xonsh")
 _ROOM_FOR_TITLES = 60
 """The minimum width of a terminal (columns) on which the status shows the titles of the steps."""
 
@@ -98,11 +99,24 @@ def begin_message(begun: Begun) -> str:
         f"The lesson:           {lesson}",
         "Grade your work:      grader check",
         "Grade on every save:  grader watch",
-        f"In each new terminal: source {quote(str(_setup_file()))}",
+        *_in_new_terminals(),
     ]
     if begun.root != progress.workspace_of(None):  # `grader check` has no option --workspace
         lines.append(f"In every terminal:    export ROS2_WORKSPACE={quote(str(begun.root))}")
     return "\n".join(lines)
+
+
+def _in_new_terminals() -> list[str]:
+    """Return the lines that tell the learner what to type in each new terminal."""
+    source = f"source {quote(str(_setup_file()))}"
+    if needs_bash():
+        return ["In each new terminal: bash", f"In this bash:         {source}"]
+    return [f"In each new terminal: {source}"]
+
+
+def needs_bash() -> bool:
+    """Return whether the user's shell cannot read the setup files of ROS 2 and of the course."""
+    return Path(os.environ.get("SHELL", "")).name in _OTHER_SHELLS
 
 
 def _setup_file() -> Path:

@@ -18,6 +18,7 @@ from grader.common import terminal_text
 from grader.common.interpreter import interpreter
 from grader.errors import GraderError
 from grader.learner import progress
+from grader.learner.steps import needs_bash
 from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
 from grader.setup.setup_errors import MACHINE_BROKEN, guarded
 
@@ -67,7 +68,9 @@ def next_words() -> str:
     except (GraderError, OSError, RuntimeError):  # the next command reports it
         begun = False
     what, command = ("see how far you are", "grader status") if begun else ("start the first step", "grader start 01")
-    return f"\nNext, in this folder: source the setup file, and {what}.\n\n    source .venv/setup.bash\n    {command}"
+    bash = "    bash\n" if needs_bash() else ""
+    words = f"\nNext, in this folder: source the setup file, and {what}."
+    return f"{words}\n\n{bash}    source .venv/setup.bash\n    {command}"
 
 
 def closing_words(exit_code: int) -> str:

@@ -122,6 +122,11 @@ def test_start_quotes_the_path_that_a_new_terminal_sources(monkeypatch: pytest.M
     monkeypatch.setenv("SHELL", "/bin/bash")
     said = steps.begin_message(steps.start("01", None))
     assert said.endswith("In each new terminal: source '/home/ada/my course/.venv/setup.bash'")
+    monkeypatch.setenv("SHELL", "/usr/bin/fish")  # which cannot read the file
+    assert steps.begin_message(steps.start("01", None)).splitlines()[-2:] == [
+        "In each new terminal: bash",
+        "In this bash:         source '/home/ada/my course/.venv/setup.bash'",
+    ]
 
 
 def test_fresh_moves_the_old_work_to_a_folder_that_colcon_ignores(home: Path) -> None:

@@ -42,6 +42,16 @@ def test_reads_the_stages_of_the_grading(tmp_path: Path) -> None:
     assert demo.grading_seconds(report) == [("colcon build", 1.5), ("simulator and node", 2.0)]
 
 
+@pytest.mark.parametrize(
+    ("shell", "begins_with_bash"), [("/bin/bash", False), ("/bin/zsh", False), ("/bin/fish", True)]
+)
+def test_a_shell_that_cannot_read_the_setup_file_starts_bash_first(
+    monkeypatch: pytest.MonkeyPatch, shell: str, *, begins_with_bash: bool
+) -> None:
+    monkeypatch.setenv("SHELL", shell)
+    assert ("\n    bash\n    source .venv/setup.bash\n" in demo.next_words()) == begins_with_bash
+
+
 @pytest.mark.parametrize(("code", "words"), [(3, "grader doctor"), (1, "not your mistake")])
 def test_a_failed_demo_says_whose_fault_it_is(code: int, words: str) -> None:
     assert words in demo.closing_words(code)
