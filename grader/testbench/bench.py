@@ -23,6 +23,7 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from grader.submission.code import read_module
+from grader.submission.reader import read
 from grader.testbench.lane import Lane, Package
 
 if TYPE_CHECKING:
@@ -223,7 +224,7 @@ def takes_options(files: Mapping[str, bytes], file: str, name: str) -> bool:
 def pack(spec: TestsSpec, package: str, files: Mapping[str, bytes]) -> bytes:
     """Return the files of the package as a tar stream, with the relayed node in place of the node's module."""
     module = f"{spec.module.replace('.', '/')}.py"
-    body = "pass" if takes_options(files, module, spec.name) else NO_OPTIONS
+    body = "pass" if read(takes_options, files, module, spec.name) else NO_OPTIONS
     text = f"{RELAYED.read_text('utf-8')}\n\nclass {spec.name}(RelayedNode):\n    {body}\n"
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w", format=tarfile.PAX_FORMAT) as tar:

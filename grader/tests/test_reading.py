@@ -27,6 +27,7 @@ NO_SUBMISSIONS = {"benchmarks", "exercise", "graph", "ros", "ros2", "setup", "tu
 INSIDE = {"checks", "evidence", "submission"}
 """Packages of the grader whose code runs in the reading process."""
 BEHIND_THE_DOOR = {
+    ("bench", "takes_options"): "bench",
     ("budget", "_read"): "relay: a separate process with limits",
     ("called", "read_called"): "calls",
     ("comparison", "installs"): "trials",
