@@ -22,6 +22,9 @@ or if it keeps writing output while it sleeps. The limit for the whole trial is 
 TICK_CPU_S = 1.0
 """The maximum CPU time (s) that a node may use on one frame. If a node uses more, it is assumed never to become
 idle."""
+LATE_CPU_S = 0.3
+"""If a node computes for longer than this (s) on one frame, it would be late in wall time. For comparison, the pauses
+of the solutions are 0.5 s long, and they compute for a few milliseconds."""
 TICK_S = 30.0
 """The maximum wall time for the node and the simulator to respond to each other in one frame (s)."""
 SHARED = 0.1
@@ -81,6 +84,10 @@ class TickPatience:
             self._cpu_s = self._node.run_time_s()
             self._before_s = self._node.run_times_s()
         return now_s > self._deadline_s or self._node.run_time_s() - self._cpu_s > TICK_CPU_S
+
+    def would_be_late(self) -> bool:
+        """Return whether the node has computed for longer than LATE_CPU_S since the first reading."""
+        return self._cpu_s is not None and self._node.run_time_s() - self._cpu_s > LATE_CPU_S
 
     def several_worked(self) -> bool:
         """Return whether several threads of the program shared the work. If not, one thread has a loop without a pause.

@@ -82,6 +82,14 @@ def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:
     assert [patience.ended(now_s) for now_s in (0.1, 0.11, 0.2, 0.21, 0.3)] == [False, False, False, False, True]
 
 
+@pytest.mark.parametrize(("worked_s", "late"), [(0.29, False), (0.31, True)])
+def test_a_node_that_computes_for_long_at_one_instant_would_be_late(worked_s: float, *, late: bool) -> None:
+    patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.0 + worked_s)), 0.0)
+    assert not patience.would_be_late()  # the CPU time has not been read yet
+    assert not patience.ended(0.1)
+    assert patience.would_be_late() == late
+
+
 def test_a_node_that_only_wakes_and_sleeps_ends_patience_by_time() -> None:
     patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.0)), 0.0)
     assert [patience.ended(now_s) for now_s in (TICK_S - 1.0, TICK_S + 1.0)] == [False, True]
