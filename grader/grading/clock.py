@@ -8,9 +8,9 @@ The rules, in the order in which they are applied:
    instead (grader.trial.clues).
 3. A trial in simulated time stops at the first sign that the node may be misjudged, for example: a thread calls sleep
    or waits for another process, commands arrive while the clock is stopped, the node would be too slow in wall time, or
-   the node never becomes idle (grader.trial.simulated). After such a sign, the trial is repeated in wall time. If
-   several threads kept the node from becoming idle, this may have happened by chance, so the trial is first repeated
-   once in simulated time.
+   the node never becomes idle (grader.trial.simulated). After such a sign, the trial is repeated in wall time. If the
+   node computed for long, or if several threads kept the node from becoming idle, this may have happened by chance, so
+   the trial is first repeated once in simulated time.
 4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
    the node did not stop.
 5. A trial in wall time is repeated if it fails, and if other programs or a change of the system time disturbed it.
