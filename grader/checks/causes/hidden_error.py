@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.handlers import caught, suppressed
 from grader.checks.causes.why_silent import calls_method
 from grader.checks.certain import FACTS, ON_EVERY_MACHINE
-from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
 
-EVERY_ERROR = ("Exception", "BaseException")
+EVERY_ERROR = frozenset({"Exception", "BaseException"})
 CLEANUP = {"destroy_node", "shutdown", "try_shutdown", "destroy", "cancel", "close", "join"}
 """Errors of these calls do not change what the node does, so a program may ignore them."""
 
@@ -62,22 +62,18 @@ def _hiding(evidence: Evidence) -> Iterator[tuple[Where, Sequence[ast.stmt]]]:
         for node in module.nodes:
             if isinstance(node, ast.Try) and not _is_cleanup(node.body):
                 yield from ((Where(module.file, each.lineno), node.body) for each in node.handlers if _hides(each))
-            if isinstance(node, ast.With) and not _is_cleanup(node.body):
-                items = [item.context_expr for item in node.items]
-                if any(isinstance(each, ast.Call) and _suppresses(each) for each in items):
-                    yield Where(module.file, node.lineno), node.body
+            elif (
+                isinstance(node, ast.With)
+                and any(suppressed(item.context_expr) & EVERY_ERROR for item in node.items)
+                and not _is_cleanup(node.body)
+            ):
+                yield Where(module.file, node.lineno), node.body
 
 
 def _hides(handler: ast.ExceptHandler) -> bool:
     """Return whether the except clause catches every error and neither reports it nor raises it again."""
-    types = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    every = any(each is None or dotted(each) in EVERY_ERROR for each in types)
-    return every and not any(isinstance(each, ast.Call | ast.Raise) for each in ast.walk(handler))
-
-
-def _suppresses(call: ast.Call) -> bool:
-    named = (dotted(call.func) or "").rpartition(".")[2] == "suppress"
-    return named and any(dotted(each) in EVERY_ERROR for each in call.args)
+    silent = not any(isinstance(each, ast.Call | ast.Raise) for each in ast.walk(handler))
+    return silent and bool(caught(handler) & EVERY_ERROR)
 
 
 def _is_cleanup(body: Sequence[ast.stmt]) -> bool:

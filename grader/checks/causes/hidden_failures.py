@@ -6,9 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.handlers import caught, suppressed
 from grader.checks.causes.weak_tests import asserts, below, last_name
 from grader.common.words import count, shorten
-from grader.submission.constants import dotted
 from grader.submission.pytest_files import Function
 from grader.submission.where import Where
 
@@ -62,7 +62,7 @@ def left_out(run: NodeRun, code: TestCode) -> Cause | None:
 
 
 def _in_try(module: Module, tried: ast.Try) -> Cause | None:
-    handler = next(filter(_catches, tried.handlers), None)
+    handler = next((each for each in tried.handlers if caught(each) & CATCHES_ALL), None)
     judged = handler is not None and any(map(asserts, (handler, *tried.orelse)))
     if handler is not None and not judged and not _asserted_later(module, tried, handler):
         text = "This except clause catches the AssertionError, so pytest does not notice the failure."
@@ -78,7 +78,7 @@ def _in_try(module: Module, tried: ast.Try) -> Cause | None:
 def _in_with(module: Module, node: ast.With) -> Cause | None:
     for item in node.items:
         call = item.context_expr
-        if isinstance(call, ast.Call) and last_name(call.func) == "suppress" and _any_catches(call.args):
+        if isinstance(call, ast.Call) and suppressed(call) & CATCHES_ALL:
             text = f"{shorten(ast.unparse(call.func), 40)} catches the AssertionError, so pytest does not notice it."
             return Cause("swallows-failure", text, Where(module.file, node.lineno))
     return None
@@ -129,13 +129,3 @@ def _asserted_later(module: Module, tried: ast.Try, handler: ast.ExceptHandler) 
     inside = set(map(id, ast.walk(tried)))
     later = [node for node in module.nodes if isinstance(node, ast.Assert) and id(node) not in inside]
     return any(isinstance(each, ast.expr) and last_name(each) in kept for node in later for each in ast.walk(node))
-
-
-def _catches(handler: ast.ExceptHandler) -> bool:
-    if handler.type is None:
-        return True
-    return _any_catches(handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type])
-
-
-def _any_catches(kinds: list[ast.expr]) -> bool:
-    return any((dotted(kind) or "").rpartition(".")[2] in CATCHES_ALL for kind in kinds)

@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.handlers import caught
 from grader.checks.causes.waiting import waits_in_callbacks
 from grader.submission.constants import dotted
 from grader.submission.where import Where
@@ -13,8 +14,8 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
-CATCHES = ("KeyboardInterrupt", "BaseException")
-"""The exceptions whose except clause catches Ctrl-C. A bare except clause also catches it."""
+CATCHES = frozenset({"KeyboardInterrupt", "BaseException"})
+"""The exceptions whose except clause catches Ctrl-C."""
 LEAVES = ast.Break | ast.Return | ast.Raise
 
 
@@ -44,15 +45,10 @@ def _catches(evidence: Evidence) -> tuple[str, Where] | None:
     """Return the reason if an endless loop continues after an except clause that catches Ctrl-C, else None."""
     for file, loop in _endless_loops(evidence):
         for node in ast.walk(loop):
-            if isinstance(node, ast.ExceptHandler) and _catches_ctrl_c(node) and not _leaves(node):
+            if isinstance(node, ast.ExceptHandler) and caught(node) & CATCHES and not _leaves(node):
                 text = f"This except clause catches Ctrl-C, and then the loop on line {loop.lineno} continues."
                 return text, Where(file, node.lineno)
     return None
-
-
-def _catches_ctrl_c(handler: ast.ExceptHandler) -> bool:
-    types = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(each is None or (dotted(each) or "").rpartition(".")[2] in CATCHES for each in types)
 
 
 def _leaves(node: ast.AST) -> bool:
