@@ -25,10 +25,14 @@ def updated() -> bool:
     """Return whether a module of the grader has changed since this process was started.
 
     The time at which the kernel last changed the file counts, since `git` and archives can set the other times. Times
-    in the future do not count: the system clock was set back.
+    in the future do not count: the system clock was set back. If the machine refuses to say when this process was
+    started, the result is False.
     """
     now = time.time()
-    start = _start(now)
+    try:
+        start = _start(now)
+    except OSError:
+        return False
     return any(start < _changed(path) <= now for path in _modules())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -36,6 +37,14 @@ def test_a_change_after_now_is_not_an_update(tmp_path: Path, monkeypatch: pytest
     assert not tested.updated()
 
 
+def test_a_machine_that_tells_no_start_hides_no_other_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_more_files(_: float) -> float:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    monkeypatch.setattr(tested, "_start", no_more_files)
+    assert not tested.updated()
+
+
 def test_the_start_is_that_of_the_process() -> None:
     code = "import time; from grader.common.updated import _start; now = time.time(); print(_start(now), now)"
     before = time.time()
@@ -51,6 +60,7 @@ def test_the_modules_are_those_that_commands_import() -> None:
 
 
 def test_an_error_after_an_update_names_the_update(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cli, "updated", lambda: False)
     assert cli._explain(KeyError("withdrawn")) is None
     monkeypatch.setattr(cli, "updated", lambda: True)
     said = cli._explain(KeyError("withdrawn"))
