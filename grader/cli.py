@@ -18,7 +18,8 @@ from grader.common.exiting import run_and_exit
 from grader.common.interpreter import clean_own
 from grader.common.log_commands import protect_output
 from grader.common.needed_command import needed_command
-from grader.common.own_process import prepare, require_own_environment
+from grader.common.own_environment import require_own_environment
+from grader.common.own_process import prepare
 from grader.common.standard_streams import make_usable
 from grader.common.terminal_text import say
 from grader.common.updated import updated

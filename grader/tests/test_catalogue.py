@@ -21,6 +21,7 @@ MOST_LINES = 13
 FAR = {
     "answers-empty": "every line of the answers is missing",
     "assert-in-loop": "any other test that needs a message notices that none arrives",
+    "bench-no-node": "tests that never create the node call functions of their own in every line",
     "empty-file": "every line of the file is missing",
     "loop-without-pause": "the clocks judge a node that never rests differently, so its cases replace whole files",
     "no-test-function": "every test of the file is missing",

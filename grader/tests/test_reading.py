@@ -68,7 +68,7 @@ OURS = {
     ("holder", "await_ready"): "the output of bubblewrap",
     ("launcher", "run"): "a request of the conductor",
     ("node_in_cell", "main"): "a request of the desk",
-    ("own_process", "require_own_environment"): "the record of our set-up",
+    ("own_environment", "require_own_environment"): "the record of our set-up",
     ("page_process", "main"): "a request of the desk",
     ("parse_colcon", "_main"): "the commands of a lesson, from validate",
     ("parse_colcon", "colcon_faults"): "the output of a process that parses the commands of a lesson",

@@ -7,7 +7,6 @@ import pytest
 from grader.checks.causes.why_hung import LOOP, why_hung
 from grader.submission.pytest_files import read_test_code
 
-WAITS = "Without timeout_sec, spin_once waits until a callback is ready. Write timeout_sec=0."
 OWN = "    def spin(self):\n        self.executor.spin_once(timeout_sec=0)\n"
 
 
@@ -17,8 +16,8 @@ OWN = "    def spin(self):\n        self.executor.spin_once(timeout_sec=0)\n"
         ("rclpy.spin(guard)", "rclpy.spin does not return, so the test does not go on.", 3),
         ("executor.spin()", "executor.spin does not return, so the test does not go on.", 3),
         ("bench.spin()", LOOP, 2),
-        ("executor.spin_once()", WAITS, 3),
-        ("rclpy.spin_once(guard)", WAITS, 3),
+        ("executor.spin_once()", "Without timeout_sec, spin_once waits until a callback is ready.", 3),
+        ("rclpy.spin_once(guard)", "Without timeout_sec, spin_once waits until a callback is ready.", 3),
         ("executor.spin_once(0)", LOOP, 2),
         ("rclpy.spin_once(guard, timeout_sec=0)", LOOP, 2),
         ("while True:\n        bench.run(1)", "This loop has no end.", 3),
