@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from grader.evidence.recording_format import Archived
     from grader.exercise.model import Exercise
     from grader.report.report import Report
-    from grader.submission.package import Submission
 
 app = App(
     name="grader",
@@ -122,6 +121,7 @@ def check(
     from grader.evidence import recording_format
     from grader.grading.grade import grade
     from grader.grading.options import Options
+    from grader.learner import exercise_argument
     from grader.report.output_file import check_writable
     from grader.report.progress_line import progress
     from grader.report.terminal import early
@@ -132,7 +132,7 @@ def check(
         check_writable(file)
     if recording:
         recording_format.check_free(recording)
-    requested, opened = _opened(submission, exercise)
+    requested, opened = exercise_argument.opened(submission, exercise)
     in_cell = bubblewrap.require(anyway="Without --sandbox, this code runs") if confined else bubblewrap.usable()
     options = Options(in_cell, clock.value, seed, explain)
     with progress() as tell:
@@ -260,18 +260,6 @@ def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple
 
     kept = recording_format.load(recording, read_exercise)
     return kept, judge(kept.evidence)
-
-
-def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
-    """Open the submission and determine its exercise from the path, the name or, if necessary, the package."""
-    from grader.learner.exercise_argument import guessed, meant, open_package
-    from grader.submission.handed_in import open_handed_in
-
-    known, place = guessed(path, name)
-    if known is not None and not known.package:
-        return known, open_handed_in(place, known)
-    opened = open_package(place, known, typed=path is not None)
-    return known or meant(opened.package_dir, None)[0], opened
 
 
 def _show(

@@ -47,6 +47,20 @@ def meant(
     return known, place
 
 
+def opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
+    """Open the submission, and determine its exercise from the path, the name or, if necessary, the package.
+
+    Raises:
+        UsageError: the arguments do not determine the exercise, or the submission cannot be opened.
+        MachineError: the learner's progress or the submission cannot be read because of the machine.
+    """
+    known, place = guessed(path, name)
+    if known is not None and not known.package:
+        return known, open_handed_in(place, known)
+    package = open_package(place, known, typed=path is not None)
+    return known or meant(package.package_dir, None)[0], package
+
+
 def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
     """Return the exercise (None if the arguments do not determine it) and the folder with the learner's work.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.weak_tests import last_name
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def is_seeded(code: TestCode, names: Collection[str]) -> bool:
     `names` are the functions that return random numbers. Whether `seed` is called before the numbers are drawn is not
     examined.
     """
-    calls = [(_last(node), node) for node in _nodes(code) if isinstance(node, ast.Call)]
+    calls = [(last_name(node.func), node) for node in _nodes(code) if isinstance(node, ast.Call)]
     fixed = [_has_fixed_seed(node) for name, node in calls if name in GENERATORS | {SEED}]
     drawn, seeded = _modules_of(code, names), _modules_of(code, (SEED,))
     return bool(fixed) and all(fixed) and drawn <= seeded
@@ -34,10 +35,6 @@ def is_seeded(code: TestCode, names: Collection[str]) -> bool:
 
 def _nodes(code: TestCode) -> Iterator[ast.AST]:
     return (node for module in code.modules for node in module.nodes)
-
-
-def _last(call: ast.Call) -> str:
-    return str(dotted(call.func) or getattr(call.func, "attr", "")).rpartition(".")[2]
 
 
 def _has_fixed_seed(call: ast.Call) -> bool:

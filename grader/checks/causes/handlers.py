@@ -6,6 +6,9 @@ import ast
 
 from grader.submission.constants import dotted
 
+EVERY_ERROR = frozenset({"Exception", "BaseException"})
+"""The exceptions with which an except clause catches every error."""
+
 
 def caught(handler: ast.ExceptHandler) -> frozenset[str]:
     """Return the names of the exceptions that the clause catches, without modules. A bare clause: BaseException."""

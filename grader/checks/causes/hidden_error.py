@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.handlers import caught, suppressed
+from grader.checks.causes.handlers import EVERY_ERROR, caught, suppressed
 from grader.checks.causes.why_silent import calls_method
 from grader.checks.certain import FACTS, ON_EVERY_MACHINE
 from grader.submission.where import Where
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
 
-EVERY_ERROR = frozenset({"Exception", "BaseException"})
 CLEANUP = {"destroy_node", "shutdown", "try_shutdown", "destroy", "cancel", "close", "join"}
 """Errors of these calls do not change what the node does, so a program may ignore them."""
 

@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.handlers import caught, suppressed
+from grader.checks.causes.handlers import EVERY_ERROR, caught, suppressed
 from grader.checks.causes.weak_tests import asserts, below, last_name
 from grader.common.words import count, shorten
 from grader.submission.pytest_files import Function
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from grader.submission.pytest_files import TestCode
     from grader.testbench.result import NodeRun
 
-CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
+CATCHES_ASSERTS = EVERY_ERROR | {"AssertionError"}
+"""The exceptions with which an except clause catches the failure of an assert."""
 SETS_ASIDE = frozenset({"skip", "skipif", "skipIf", "skipUnless", "xfail", "expectedFailure", "importorskip"})
 """The marks, decorators and functions of pytest and unittest with which a failing test is not counted as failed."""
 Tried = (ast.Try, ast.With)
@@ -62,7 +63,7 @@ def left_out(run: NodeRun, code: TestCode) -> Cause | None:
 
 
 def _in_try(module: Module, tried: ast.Try) -> Cause | None:
-    handler = next((each for each in tried.handlers if caught(each) & CATCHES_ALL), None)
+    handler = next((each for each in tried.handlers if caught(each) & CATCHES_ASSERTS), None)
     judged = handler is not None and any(map(asserts, (handler, *tried.orelse)))
     if handler is not None and not judged and not _asserted_later(module, tried, handler):
         text = "This except clause catches the AssertionError, so pytest does not notice the failure."
@@ -78,7 +79,7 @@ def _in_try(module: Module, tried: ast.Try) -> Cause | None:
 def _in_with(module: Module, node: ast.With) -> Cause | None:
     for item in node.items:
         call = item.context_expr
-        if isinstance(call, ast.Call) and suppressed(call) & CATCHES_ALL:
+        if isinstance(call, ast.Call) and suppressed(call) & CATCHES_ASSERTS:
             text = f"{shorten(ast.unparse(call.func), 40)} catches the AssertionError, so pytest does not notice it."
             return Cause("swallows-failure", text, Where(module.file, node.lineno))
     return None

@@ -16,6 +16,7 @@ from grader.common.words import shorten
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.submission.pytest_files import TestCode
     from grader.testbench.result import NodeRun
 
@@ -40,6 +41,37 @@ USAGE_ERROR = 4
 """The exit code of pytest if an option is wrong, or if conftest.py cannot be imported."""
 UNCALLED = re.compile(r"assert [^\n]*<(?:bound method|function|built-in (?:function|method)) (?P<name>[\w.]+)")
 """Matches pytest's message about an assert that compares a function with something."""
+MESSAGES: dict[str, tuple[Diagnosis, str]] = {
+    "fixture function has more than one 'yield'": (
+        "fixture-missing",
+        "A fixture has one yield. The lines before it prepare the object, and the lines after it clean up.",
+    ),
+    "async def functions are not natively supported": (
+        "test-function-name",
+        "pytest does not run functions that are defined with async def. Write def.",
+    ),
+    "approx() is not supported in a boolean context": (
+        "compares-only",
+        "pytest.approx is one side of a comparison: assert value == pytest.approx(expected).",
+    ),
+    "Failed to create subscription": (
+        "second-type",
+        "A topic has one type. Does the test subscribe with the type with which the node publishes?",
+    ),
+    "Failed to create publisher": (
+        "second-type",
+        "A topic has one type. Does the test publish with the type to which the node subscribes?",
+    ),
+    "type must be an instance of '<enum 'Type'>'": (
+        "rejects-right",
+        'The second argument of Parameter is the type. Name the value: Parameter("use_sim_time", value=True).',
+    ),
+    "'Parameter' object is not iterable": (
+        "rejects-right",
+        "set_parameters takes a list. Write brackets around the parameter: set_parameters([Parameter(...)]).",
+    ),
+}
+"""Maps a part of a message of pytest or rclpy to the diagnosis and the cause that it shows."""
 ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
 
 
@@ -120,12 +152,6 @@ def _known(message: str, where: Where | None) -> Cause | None:
     if unnamed is not None:
         text = "The name of the fixture is not a parameter of the test, so it refers to the fixture function itself."
         return Cause("fixture-missing", text, where)
-    if "fixture function has more than one 'yield'" in message:
-        text = "A fixture has one yield. The lines before it prepare the object, and the lines after it clean up."
-        return Cause("fixture-missing", text, where)
-    if "async def functions are not natively supported" in message:
-        text = "pytest does not run functions that are defined with async def. Write def."
-        return Cause("test-function-name", text, where)
     field = FIELD.search(message)
     if field is not None:
         text = f"The field {shorten(field['name'], 60)} is a float. Write the number with a decimal point."
@@ -135,9 +161,9 @@ def _known(message: str, where: Where | None) -> Cause | None:
         name = shorten(uncalled["name"].rpartition(".")[2], 60)
         text = f"{name} is a function, and the test compares the function itself. Call it: {name}(...)."
         return Cause("compares-only", text, where)
-    if "approx() is not supported in a boolean context" in message:
-        text = "pytest.approx is one side of a comparison: assert value == pytest.approx(expected)."
-        return Cause("compares-only", text, where)
+    for part, (diagnosis, text) in MESSAGES.items():
+        if part in message:
+            return Cause(diagnosis, text, where)
     return _of_ros(message, where)
 
 
@@ -157,18 +183,6 @@ def _of_ros(message: str, where: Where | None) -> Cause | None:
     if OUTSIDE.search(last_error(message)):
         text = "A test must also run without a display and without a network."
         return Cause("needs-the-outside", text, where)
-    if "Failed to create subscription" in message:
-        text = "A topic has one type. Does the test subscribe with the type with which the node publishes?"
-        return Cause("second-type", text, where)
-    if "Failed to create publisher" in message:
-        text = "A topic has one type. Does the test publish with the type to which the node subscribes?"
-        return Cause("second-type", text, where)
-    if "type must be an instance of '<enum 'Type'>'" in message:
-        text = 'The second argument of Parameter is the type. Name the value: Parameter("use_sim_time", value=True).'
-        return Cause("rejects-right", text, where)
-    if "'Parameter' object is not iterable" in message:
-        text = "set_parameters takes a list. Write brackets around the parameter: set_parameters([Parameter(...)])."
-        return Cause("rejects-right", text, where)
     style = STYLE.search(message)
     if style is not None:
         text = (

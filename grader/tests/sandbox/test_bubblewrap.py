@@ -10,6 +10,7 @@ import pytest
 
 from grader import cli
 from grader.errors import MachineError
+from grader.learner import exercise_argument
 from grader.sandbox import bubblewrap, process
 from grader.sandbox.limits import MIB, Limits
 from grader.sandbox.system_calls import DENIED, call_filter, program
@@ -210,7 +211,7 @@ def test_grading_for_marks_refuses_without_a_sandbox(monkeypatch: pytest.MonkeyP
 
 def test_grader_check_without_a_sandbox_names_only_its_own_option(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bubblewrap, "program", lambda: None)
-    monkeypatch.setattr(cli, "_opened", lambda *_: (None, None))
+    monkeypatch.setattr(exercise_argument, "opened", lambda *_: (None, None))
     monkeypatch.setattr(gc, "disable", lambda: None)  # the other tests of this process need garbage collection
     with pytest.raises(MachineError) as raised:
         cli.check(confined=True)
