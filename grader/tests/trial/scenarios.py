@@ -16,12 +16,12 @@ from turtlesim.action import RotateAbsolute
 from turtlesim.srv import Spawn
 
 from grader.tests.waiting import HANG_S, until
-from grader.trial import wall
+from grader.trial import simulated, wall
 from grader.trial.inputs import Inputs
 from grader.trial.recording import Pose
-from grader.trial.rest import Look
+from grader.trial.rest import DoubtError, Look
 from grader.trial.silent_servers import SilentServers
-from grader.trial.simulated import QUIET_S
+from grader.trial.simulated import QUIET_S, SimulatedTrial
 from grader.trial.wall import WallTrial
 from grader.trial.without_node import AloneTrial
 
@@ -232,6 +232,32 @@ def graphs_of_two_nodes() -> dict[str, Any]:
     until(lambda: recorder.count_publishers("/x") == 1)
     found["one less"] = publishers()
     return found
+
+
+def what_is_in_doubt() -> dict[str, list[Any] | None]:
+    """Return the doubt about a node, and whether it may have arisen by chance, or None if there is no doubt."""
+
+    def doubt(*, late: bool = False, started: bool = False, ending: bool = False) -> list[Any] | None:
+        stage: Any = SimulatedTrial.__new__(SimulatedTrial)
+        stage.doubts, stage._stop_at_doubt = [], True
+        stage._node = SimpleNamespace(waits=list)
+        stage.node = SimpleNamespace(pids=(1,), has_started_others=lambda: started)
+        stage._respond, stage._is_ending = (lambda _: None), (lambda: ending)
+        patience = SimpleNamespace(would_be_late=lambda: late)
+        try:
+            with patch.object(simulated, "TickPatience", lambda *_: patience):
+                stage._settle()
+            stage._doubt_sleepers()
+        except DoubtError as error:
+            return [str(error), error.by_chance]
+        return None
+
+    return {
+        "late": doubt(late=True),
+        "another process": doubt(started=True),
+        "another process at the end": doubt(started=True, ending=True),
+        "nothing": doubt(),
+    }
 
 
 def quiet_s() -> float:
