@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.common.updated import START_AGAIN
 from grader.errors import UsageError
+from grader.open import desk_server
 from grader.open.desk_server import DeskServer
 from grader.view.guard import Door
 
@@ -27,6 +29,17 @@ class Asked:
         yield b"{}"
 
 
+def response_to(error: Exception) -> tuple[int, str]:
+    """Return the status and the problem in the response to an action that raises this error."""
+
+    def act(_: Mapping[str, Any]) -> object:
+        raise error
+
+    server: Any = DeskServer(None, None, Door("token"), None, {"act": act}, None)  # type: ignore[arg-type]
+    made = asyncio.run(server._act(Asked()))
+    return made.status_code, json.loads(made.body)["problem"]
+
+
 @pytest.mark.parametrize(
     ("error", "status", "problem"),
     [
@@ -38,12 +51,15 @@ class Asked:
     ],
 )
 def test_an_error_of_an_action_is_not_reported_as_one_of_the_request(
-    error: Exception, status: int, problem: str
+    error: Exception, status: int, problem: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def act(_: Mapping[str, Any]) -> object:
-        raise error
+    monkeypatch.setattr(desk_server, "updated", lambda: False)
+    made_status, made_problem = response_to(error)
+    assert made_status == status
+    assert problem in made_problem
 
-    server: Any = DeskServer(None, None, Door("token"), None, {"act": act}, None)  # type: ignore[arg-type]
-    made = asyncio.run(server._act(Asked()))
-    assert made.status_code == status
-    assert problem in json.loads(made.body)["problem"]
+
+def test_an_error_after_an_update_names_the_update(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(desk_server, "updated", lambda: True)
+    assert response_to(KeyError("withdrawn")) == (500, START_AGAIN)
+    assert response_to(UsageError("The step does not exist.")) == (409, "The step does not exist.")

@@ -6,10 +6,12 @@ import pytest
 
 from grader.checks.cause import Cause
 from grader.checks.causes.hidden_error import with_hidden_error
-from grader.checks.outcome import Finding, failed
+from grader.checks.judge import judge
+from grader.checks.outcome import Finding, Status, failed
 from grader.submission.where import Where
 from grader.tests.checks.crashes import LOOK, line_with
-from grader.tests.checks.made import NODE_FILE, evidence, submission
+from grader.tests.checks.made import NODE_FILE, evidence, node, submission
+from grader.tests.checks.shapes import SHAPES
 
 NODE = """\
 class Driver(Node):
@@ -106,3 +108,11 @@ def test_a_place_in_another_file_is_told_with_the_file(where: Where | None) -> N
 def test_a_cause_at_the_line_itself_is_not_told_twice() -> None:
     source = trying()
     assert told(source, Cause("not-moving", "A cause.", Where(NODE_FILE, line_with(LOOK, source)))).cause == "A cause."
+
+
+@pytest.mark.parametrize(("handler", "told_"), [("except Exception:", True), ("except ValueError:", False)])
+def test_a_report_names_the_line_that_hides_an_error(handler: str, *, told_: bool) -> None:
+    hidden = f"msg = Twist()\n        try:\n            print(msg.speed)\n        {handler}\n            return"
+    outcomes = {each.id: each for each in judge(evidence(SHAPES["three quarters"](), node(("msg = Twist()", hidden))))}
+    assert outcomes["circle"].status is Status.FAILED
+    assert ("hides an error: print it." in outcomes["circle"].finding.cause) == told_
