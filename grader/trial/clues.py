@@ -41,6 +41,8 @@ _NAMES = {
     "SYSTEM_TIME",
     "timeout_sec",
     "throttle_duration_sec",
+    # In simulated time, the jumps of the clock have other lengths.
+    "create_jump_callback",
     # A node that ignores the global arguments ignores use_sim_time too.
     "use_global_arguments",
 }

@@ -26,7 +26,7 @@ import time
 import types
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -51,6 +51,9 @@ _NOT_NEEDED = "rosidl_generator_py.generate_py_impl"
 _SIMULATED = "use_sim_time:=true"
 DELIVERY_S = 0.5
 """The maximum time for which a publisher is kept until its messages have been acknowledged (s)."""
+PAUSES = 0x7A3C5EC10C4B0A5E
+"""A number that shows that the memory is still that of the launcher, and not that of a program which replaced it."""
+FOREVER = 2**62
 _PR_SET_PDEATHSIG = 1
 """The first argument of prctl(2), with its value from linux/prctl.h."""
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
@@ -145,6 +148,41 @@ def deliver_before_destroying() -> None:
     Publisher.destroy = destroy
 
 
+def publish_pauses(pause: ctypes.Array[ctypes.c_int64]) -> None:
+    """Keep two numbers in `pause`: PAUSES, and how long the node has nothing to do unless it receives something (ns).
+
+    That is the time until the next timer is due, as of the start of the current wait, and FOREVER without timers. If
+    this is not known, for example because no executor is waiting, or several, it is 0.
+    """
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    waiting = 0
+
+    class WaitSet(rclpy_implementation.WaitSet):
+        def __init__(self, *sizes: object) -> None:
+            super().__init__(*sizes)
+            self._timers: list[Any] = []
+
+        def add_timer(self, timer: Any) -> object:  # noqa: ANN401 - a timer of rclpy's C++ part
+            self._timers.append(timer)
+            return super().add_timer(timer)
+
+        def wait(self, timeout_ns: int) -> None:
+            nonlocal waiting
+            waiting += 1
+            try:
+                left_ns = [timer.time_until_next_call() for timer in self._timers]
+                least_ns = min((ns for ns in left_ns if ns is not None), default=FOREVER)  # None: cancelled
+                pause[1] = least_ns if waiting == 1 else 0
+                super().wait(timeout_ns)
+            finally:
+                waiting -= 1
+                pause[1] = 0
+
+    pause[0] = PAUSES
+    rclpy_implementation.WaitSet = WaitSet
+
+
 def _exit_without_waiting() -> None:
     """Skip the cleanup of the libraries at the end of the process if ROS has been shut down.
 
@@ -207,7 +245,8 @@ def main() -> None:
 
 def run(waiting: list[Postponed]) -> None:
     """Wait for the start command, and then run the node in this process. `waiting` comes from `import_ahead`."""
-    os.write(1, b"\x00ready\n")
+    pause = (ctypes.c_int64 * 2)()
+    os.write(1, b"\x00ready %d\n" % ctypes.addressof(pause))
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:
         # A malicious member can do no harm in a cell, and the Python of Debian 12 does not have extraction filters yet.
@@ -241,7 +280,9 @@ def run(waiting: list[Postponed]) -> None:
     deliver_before_destroying()
     if order["ros_arguments"]:
         _initialize_with(order["ros_arguments"])
-    if _SIMULATED not in order["ros_arguments"]:
+    if _SIMULATED in order["ros_arguments"]:
+        publish_pauses(pause)
+    else:
         # In wall time, an import in the middle of a callback would delay the node.
         for each in waiting:
             each.load()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import socket
 import subprocess
 from abc import ABC, abstractmethod
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
     from grader.sandbox.limits import Limits
 
 
-READY = b"\x00ready\n"
-"""The launcher writes this output when it is ready, before any of the student's code runs."""
+_READY = re.compile(rb"\x00ready (\d+)\n\Z")
+"""The launcher writes this output when it is ready, before any of the student's code runs. The number is the address
+of the pause (launcher.publish_pauses)."""
 _PLAIN = {"PATH": "/usr/bin:/bin"}
 _NO_FORKS = "the process of the grader that forks nodes has exited"
 _ENDS_S = 5.0
@@ -32,20 +34,21 @@ class LaunchError(Exception):
     """The launcher itself failed. The machine is considered the cause, since none of the student's code has run."""
 
 
-def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> None:
-    """Wait until a launcher is ready to receive the data about its node.
+def await_launcher(stdout: IO[bytes], stderr: IO[bytes] | None = None) -> int:
+    """Wait until a launcher is ready to receive the data about its node. Return the address of its pause.
 
     Raises:
         LaunchError: the launcher exited. The message is the output of the launcher, if any.
     """
     received = b""
-    while not received.endswith(READY):
+    while (ready := _READY.search(received)) is None:
         # Read single bytes, because the following output is that of the node.
         byte = os.read(stdout.fileno(), 1)
         if not byte:
             output = received + (stderr.read() if stderr is not None else b"")
             raise LaunchError(output.decode("utf-8", "replace").strip() or "the launcher printed nothing")
         received += byte
+    return int(ready[1])
 
 
 class Launcher(ABC):

@@ -104,6 +104,8 @@ class NodeProcess:
         self._streams = [Stream(launcher.stdout.fileno()), Stream(launcher.stderr.fileno())]
         self._full = FULL * min(enlarge(stream.fd) for stream in self._streams)
         self.pid = 0
+        self.pause_address = 0
+        """The address of the pause (launcher.publish_pauses) in the memory of the process."""
         self._observed: float | None = None
         """After SIGINT: the time of CLOCK_MONOTONIC at which `_stopping_s` was last called (s)."""
         self._passed_s = 0.0
@@ -129,7 +131,7 @@ class NodeProcess:
         """
         self._processes = self._launcher.await_started()
         self.pid = self._processes[0]
-        await_launcher(self._launcher.stdout, self._launcher.stderr)
+        self.pause_address = await_launcher(self._launcher.stdout, self._launcher.stderr)
         for stream in self._streams:
             os.set_blocking(stream.fd, False)
 

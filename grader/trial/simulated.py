@@ -1,9 +1,10 @@
 """A trial in simulated time: before /clock advances, the trial waits until the node is idle.
 
 The clock stays at 0 until the simulator and the node have discovered each other (the handshake). After this handshake,
-the clock advances in frames of 16 ms. The threads of a node show whether the node follows wall time. Any sign that the
-node follows wall time, or never becomes idle, is called a doubt. With `--clock auto`, a doubt usually leads to a trial
-in wall time (grading/clock.py; docs/design.md, decision 3).
+the clock advances in frames of 16 ms, and the node gets the time of each frame in which it may have something to do
+(pauses.py). The threads of a node show whether the node follows wall time. Any sign that the node follows wall time, or
+never becomes idle, is called a doubt. With `--clock auto`, a doubt usually leads to a trial in wall time
+(grading/clock.py; docs/design.md, decision 3).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from rosgraph_msgs.msg import Clock
 from grader.common.linux_calls import sleep_precisely
 from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
+from grader.trial.pauses import pause_s
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.simulation import Simulation
 from grader.trial.wait import HIDDEN, doubt
@@ -70,7 +72,7 @@ class SimulatedTrial(Simulation):
         *,
         stop_at_doubt: bool,
     ) -> None:
-        self._now_s = 0.0
+        self._now_s = self._pause_until_s = 0.0
         self._followers = 0
         self._stop_at_doubt = stop_at_doubt
         super().__init__(node, start, prefixes, inputs, judged)
@@ -93,10 +95,15 @@ class SimulatedTrial(Simulation):
             self.lap("start")
             self._handshake()
             self.lap("discovery")
-            for frame in range(1, round(duration_s / FRAME_S) + 1):
-                self.tick(frame * FRAME_S)
-                self._settle()
-                self._await_leaver()
+            for frame in range(1, (last := round(duration_s / FRAME_S)) + 1):
+                self._now_s = frame * FRAME_S
+                if self._now_s < self._pause_until_s and frame % GRAPH_EVERY and frame != last:
+                    self.frame(self._now_s)
+                else:
+                    self.tick(self._now_s)
+                    self._settle()
+                    self._await_leaver()
+                    self._pause_until_s = self._now_s + pause_s(self)
                 if frame % OWN_EVERY == 0:
                     self._take_in(requests=False)
                 if frame % GRAPH_EVERY == 0:

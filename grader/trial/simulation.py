@@ -95,10 +95,10 @@ class Simulation:
         # Call this before other turtles exist: without its events, rclpy could not destroy a topic of a removed turtle.
         leave_out_events(self.turtlesim)
         self.keeper = TargetKeeper(self.turtlesim, inputs, self._calls.answered) if inputs.targets else None
-        self._nodes: tuple[Node, ...] = tuple(filter(None, (self.turtlesim, self.recorder, self.keeper)))
-        self.recorder.own_nodes = tuple(each.get_fully_qualified_name() for each in self._nodes)
+        self.nodes: tuple[Node, ...] = tuple(filter(None, (self.turtlesim, self.recorder, self.keeper)))
+        self.recorder.own_nodes = tuple(each.get_fully_qualified_name() for each in self.nodes)
         self.executor = SingleThreadedExecutor()
-        for each in self._nodes:
+        for each in self.nodes:
             self.executor.add_node(each)
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
         self.doubts: list[str] = []
@@ -184,7 +184,7 @@ class Simulation:
         if self._actions is None:
             self._actions = [
                 name
-                for node in self._nodes
+                for node in self.nodes
                 for name, _ in node.get_service_names_and_types_by_node(node.get_name(), node.get_namespace())
                 if "/_action/" in name
             ]
@@ -196,9 +196,9 @@ class Simulation:
         """Handle the messages and, with `requests`, the requests that have arrived. Return the number of requests."""
         answered = 0
         while answered < MOST_AT_ONCE:
-            for subscription in [each for node in self._nodes for each in node.subscriptions]:
+            for subscription in [each for node in self.nodes for each in node.subscriptions]:
                 take_messages(subscription)
-            services = [service for node in self._nodes for service in node.services] if requests else []
+            services = [service for node in self.nodes for service in node.services] if requests else []
             more = sum(map(take_requests, services))
             if not more:
                 break

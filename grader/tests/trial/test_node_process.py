@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
-SLOW = r"""printf '\0ready\n'; read order; trap 'sleep 1; exit 0' INT; echo waits; while :; do sleep 0.05; done"""
+SLOW = r"""printf '\0ready 0\n'; read order; trap 'sleep 1; exit 0' INT; echo waits; while :; do sleep 0.05; done"""
 """A node that takes a second to stop."""
 QUICK = SLOW.replace("sleep 1; ", "")
 STUCK = SLOW.replace("sleep 1; exit 0", "while :; do sleep 0.05; done")
 """A node that does not stop on Ctrl-C."""
 ONLY_MAIN_EXITS = r"""
 import ctypes, threading, time
-print("\0ready", flush=True)
+print("\0ready 0", flush=True)
 threading.Thread(target=time.sleep, args=(600,)).start()
 ctypes.CDLL(None).pthread_exit(None)
 """
@@ -152,7 +152,7 @@ def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_i
     stopping, pid = tmp_path / "stopping", tmp_path / "pid"
     slow_one = SLOW.replace("sleep 1;", f"touch {stopping}; while kill -0 $(cat {pid}); do sleep 0.01; done;")
     wait = f"echo $$ > {pid}; echo waits; until [ -e {stopping} ]; do sleep 0.01; done"
-    follower = rf"printf '\0ready\n'; read order; {wait}; exit 3"
+    follower = rf"printf '\0ready 0\n'; read order; {wait}; exit 3"
     limits = Limits(processes=50, cpu_s=60)
     with (
         NodeProcess(LauncherProcess(["sh", "-c", slow_one]), limits) as slow,
@@ -165,7 +165,7 @@ def test_a_node_that_exits_while_another_one_is_being_stopped_has_not_ended_on_i
 
 @pytest.mark.usefixtures("clock")
 def test_a_node_that_is_busy_after_another_one_has_left_gets_time_before_it_is_stopped() -> None:
-    busy = r"printf '\0ready\n'; read order; trap 'exit 0' INT; echo waits; while :; do :; done"
+    busy = r"printf '\0ready 0\n'; read order; trap 'exit 0' INT; echo waits; while :; do :; done"
     limits = Limits(processes=50, cpu_s=60)
     with (
         NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as first,
