@@ -10,7 +10,7 @@ The rules, in the order in which they are applied:
    or waits for another process, commands arrive while the clock is stopped, the node would be too slow in wall time, or
    the node never becomes idle (grader.trial.simulated). After such a sign, the trial is repeated in wall time. If the
    node computed for long, or if several threads kept the node from becoming idle, this may have happened by chance, so
-   the trial is first repeated once in simulated time.
+   the trial is first repeated in simulated time. There are at most SIMULATED_TRIALS such trials.
 4. A trial in simulated time is also repeated in wall time if a measured value is near the edge of its tolerance, or if
    the node did not stop.
 5. A trial in wall time is repeated if it fails, and if other programs or a change of the system time disturbed it.
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 ClockChoice = Literal["auto", "simulated", "wall"]
 
+SIMULATED_TRIALS = 3
+"""The maximum number of trials in simulated time if each of them is stopped by chance (rule 3)."""
 WALL_TRIALS = 3
 """The maximum number of trials in wall time if the trials are disturbed (rule 5)."""
 
@@ -97,9 +99,9 @@ def stops_at_doubt(choice: ClockChoice) -> bool:
     return choice == "auto"
 
 
-def repeats(doubt: WallTimeNeeded) -> bool:
-    """Return whether a trial that was stopped for this reason is first repeated in simulated time (rule 3)."""
-    return doubt.by_chance
+def repeats(doubt: WallTimeNeeded, trials: int) -> bool:
+    """Return whether a trial is repeated in simulated time after this doubt and so many trials (rule 3)."""
+    return doubt.by_chance and trials < SIMULATED_TRIALS
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:

@@ -174,8 +174,12 @@ class Trials:
                     attempts.append(self._run(evidence, again, wall, settled))
         return policy.that_counts(attempts)
 
-    def _run_simulated(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
-        """Run the trial in simulated time, and once more if the trial may have been stopped by chance.
+    def _run_simulated(
+        self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding], trials: int = 1
+    ) -> Attempt:
+        """Run the trial in simulated time, and again if it may have been stopped by chance (rule 3).
+
+        This is the trial with the number `trials`.
 
         Raises:
             WallTimeNeeded: the trial must be repeated in wall time.
@@ -183,10 +187,10 @@ class Trials:
         try:
             return self._run(evidence, trial, clock, settled)
         except WallTimeNeeded as doubt:
-            if not policy.repeats(doubt):
+            if not policy.repeats(doubt, trials):
                 raise
         with self._trial(evidence, clock.name) as again:
-            return self._run(evidence, again, clock, settled)
+            return self._run_simulated(evidence, again, clock, settled, trials + 1)
 
     def _run(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
         duration_s = evidence.trial.scenario.duration_s

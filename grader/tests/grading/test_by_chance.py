@@ -1,6 +1,6 @@
-"""A trial in simulated time that stopped by chance is repeated once.
+"""A trial in simulated time that stopped by chance is repeated at most twice.
 
-If the repeated trial also stops, a trial in wall time decides.
+If the last repeated trial also stops, a trial in wall time decides.
 """
 
 from __future__ import annotations
@@ -70,7 +70,8 @@ class _Trial:
     [
         ([], ["simulated"]),
         ([CHANCE], ["simulated", "simulated"]),
-        ([CHANCE, CHANCE], ["simulated", "simulated", "wall"]),
+        ([CHANCE, CHANCE], ["simulated", "simulated", "simulated"]),
+        ([CHANCE, CHANCE, CHANCE], ["simulated", "simulated", "simulated", "wall"]),
         ([CHANCE, SLEEPS], ["simulated", "simulated", "wall"]),
         ([SLEEPS], ["simulated", "wall"]),
     ],
