@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from grader.checks.cause import Cause
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Finding, Outcome, Status, failed
+from grader.classroom.build_turns import build_in_turn
 from grader.classroom.key import grader_key
 from grader.classroom.refused import Refused
 from grader.colcon.shared_builds import SharedBuilds
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
 
 Pace = Literal["waits", "works"]
-_builds = cache(SharedBuilds)
+_builds = cache(lambda: SharedBuilds(build_in_turn))
 
 
 @dataclass(frozen=True)

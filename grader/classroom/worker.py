@@ -2,9 +2,9 @@
 
 The workers of a command are forks of one process, the worker server (`python -m grader.classroom.worker DESCRIPTOR`).
 This process has imported everything that grading needs, and has started the fork servers of the trials
-(grader.trial.fork_server), so that the workers share their memory and the fork servers. Student code does not run in
-these processes, but in the sandbox cells that the workers start. If the process that started the worker server exits,
-then the server, the workers and all their descendants exit too.
+(grader.trial.fork_server), so that the workers share their memory, the fork servers and the turns for builds
+(build_turns.py). Student code does not run in these processes, but in the sandbox cells that the workers start. If the
+process that started the worker server exits, then the server, the workers and all their descendants exit too.
 """
 
 from __future__ import annotations
@@ -159,9 +159,11 @@ def _import_all() -> None:
     """Import in advance the modules that grading needs, so that the first task does not have to wait for the import."""
     import grader.classroom.task
     import grader.report.html  # noqa: F401
+    from grader.classroom.build_turns import lock_file
 
     load_catkin_pkg()
     load_numpy()
+    lock_file()
 
 
 def _start_fork_servers() -> None:
