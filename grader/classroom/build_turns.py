@@ -45,10 +45,12 @@ def build_in_turn(*arguments: Any, **options: Any) -> runner.Built:  # noqa: ANN
 
 @contextmanager
 def turn(wait_s: float = WAIT_S) -> Iterator[None]:
-    """Wait up to `wait_s` for a turn, and keep the turn inside the context."""
-    until = time.monotonic() + wait_s
-    while (mine := _take()) is None and time.monotonic() < until:
-        time.sleep(_POLL_S)
+    """Wait up to `wait_s` for a turn, and keep the turn inside the context. On a system without locks, do not wait."""
+    mine = None
+    with suppress(OSError):
+        until = time.monotonic() + wait_s
+        while (mine := take()) is None and time.monotonic() < until:
+            time.sleep(_POLL_S)
     try:
         yield
     finally:
@@ -56,10 +58,15 @@ def turn(wait_s: float = WAIT_S) -> Iterator[None]:
             fcntl.lockf(lock_file(), fcntl.LOCK_UN, 1, mine)
 
 
-def _take() -> int | None:
-    """Take a turn that is free, and return its number. If none is free, return None."""
+def take() -> int | None:
+    """Take a turn that is free, and return its number. If none is free, return None.
+
+    Raises:
+        OSError: the system refuses the file or the lock.
+    """
+    file = lock_file()
     for number in range(turns()):
-        with suppress(OSError):
-            fcntl.lockf(lock_file(), fcntl.LOCK_EX | fcntl.LOCK_NB, 1, number)
+        with suppress(BlockingIOError, PermissionError):  # another process has this turn (fcntl(2))
+            fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, number)
             return number
     return None

@@ -163,7 +163,8 @@ def _import_all() -> None:
 
     load_catkin_pkg()
     load_numpy()
-    lock_file()
+    with suppress(OSError):  # then nobody waits for a turn
+        lock_file()
 
 
 def _start_fork_servers() -> None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 import subprocess
 import sys
 from contextlib import ExitStack, closing
@@ -7,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom import worker
-from grader.classroom.build_turns import turns
+from grader.classroom import build_turns, worker
+from grader.classroom.build_turns import turn, turns
 from grader.classroom.worker import Worker
 from grader.tests.classroom.test_worker import below, refuses
 from grader.tests.waiting import HANG_S
@@ -28,7 +29,7 @@ def in_a_fork(does):
     os.waitpid(child, 0)
 
 def look():
-    print("taken" if build_turns._take() is None else "free", flush=True)
+    print("taken" if build_turns.take() is None else "free", flush=True)
 
 def wait():
     with build_turns.turn(0.05):
@@ -53,6 +54,19 @@ def test_a_turn_ends_with_its_build_or_its_process_and_nobody_waits_for_ever() -
     program = [sys.executable, "-c", FORKS]
     said = subprocess.run(program, stdout=subprocess.PIPE, text=True, timeout=HANG_S, check=True).stdout
     assert said.splitlines() == ["taken", "builds anyway", "free", "free"]
+
+
+@pytest.mark.parametrize(
+    "refused", [OSError(errno.ENOLCK, "No locks available"), OSError(errno.EPERM, "Not permitted")]
+)
+def test_without_locks_nobody_waits(refused: OSError, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse() -> int:
+        raise refused
+
+    monkeypatch.setattr(build_turns, "lock_file", refuse)
+    monkeypatch.setattr("time.sleep", lambda _: pytest.fail("waited"))
+    with turn():
+        pass
 
 
 def test_all_workers_of_a_command_share_the_turns(monkeypatch: pytest.MonkeyPatch) -> None:
