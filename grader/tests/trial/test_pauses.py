@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from grader.sandbox import bubblewrap
 from grader.tests.trial.forks import run
 from grader.tests.trial.program import python
+from grader.trial.inputs import Inputs, PlannedCall
 from grader.trial.launcher import PAUSES
 from grader.trial.pauses import process_pause_s
 from grader.trial.recording import Pose
@@ -55,6 +57,22 @@ from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
 def count(_): node.clocks += 1
 node.create_subscription(Clock, "/clock", count, qos_profile_sensor_data)
+"""
+ANOTHER = """
+from threading import Thread
+from rclpy.executors import SingleThreadedExecutor
+another = rclpy.create_node("another")
+another.create_timer(2.0, lambda: None)
+executor = SingleThreadedExecutor()
+executor.add_node(another)
+Thread(target=executor.spin, daemon=True).start()
+"""
+SERVES = """
+from std_srvs.srv import Empty
+def serve(request, response):
+    print("called at", node.get_clock().now().nanoseconds)
+    return response
+node.create_service(Empty, "/serve", serve)
 """
 SPINS = "rclpy.spin(node)"
 PLAN = Plan("simulated", Pose(5.5, 5.5, 0.0), None, 4.0)
@@ -121,13 +139,26 @@ def test_a_node_does_the_same_whether_it_gets_the_time_of_every_frame_or_not(see
         (["self.create_timer(0.5, lambda: self.send(1))"], LISTENS, 300, 245),
         (["self.create_timer(0.5, lambda: self.send(1))"], 'node.create_client(SetPen, "/turtle1/set_pen")', 300, 245),
         (["self.create_timer(0.01, lambda: self.send(1))"], "", 300, 245),
+        (["self.create_timer(0.5, lambda: self.send(1))"], ANOTHER, 300, 245),
     ],
-    ids=["a timer", "no timer", "a subscription", "a client", "a timer that is due in each frame"],
+    ids=["a timer", "no timer", "a subscription", "a client", "a timer that is due in each frame", "two executors"],
 )
 def test_a_node_gets_the_time_of_the_frames_in_which_it_may_act(
     timers: list[str], listens: str, most: int, least: int
 ) -> None:
     assert least <= heard(run(node(*timers, listens=listens + "\n" + COUNTS), PLAN)) <= most
+
+
+FRAMES_NS = ((1_184_000_000, 1_200_000_000), (2_736_000_000, 2_752_000_000))
+
+
+@in_a_cell
+def test_a_node_that_is_called_by_the_trial_knows_the_time() -> None:
+    calls = tuple(PlannedCall(at_s, "/serve", "std_srvs/srv/Empty", {}) for at_s in (1.2, 2.75))
+    recording = run(node(listens=SERVES), replace(PLAN, inputs=Inputs(calls=calls)))
+    # The time of the frame may arrive before or after the call that is made in this frame.
+    known_ns = [int(line.split()[-1]) for line in recording.stdout.text.splitlines() if line.startswith("called")]
+    assert [number in each for number, each in zip(known_ns, FRAMES_NS, strict=True)] == [True, True]
 
 
 LIES = """
