@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom import build_turns, worker
-from grader.classroom.build_turns import turn, turns
+from grader.classroom import build_turns, task, worker
+from grader.classroom.build_turns import build_in_turn, turn, turns
 from grader.classroom.worker import Worker
 from grader.tests.classroom.test_worker import below, refuses
 from grader.tests.waiting import HANG_S
@@ -41,6 +41,8 @@ with build_turns.turn():
     in_a_fork(wait)
 in_a_fork(look)  # this fork ends with its turn
 in_a_fork(look)
+build_turns.runner.build = lambda: in_a_fork(look)
+build_turns.build_in_turn()
 """
 
 
@@ -53,7 +55,8 @@ def test_at_most_half_of_the_processors_build(processors: int, at_once: int, mon
 def test_a_turn_ends_with_its_build_or_its_process_and_nobody_waits_for_ever() -> None:
     program = [sys.executable, "-c", FORKS]
     said = subprocess.run(program, stdout=subprocess.PIPE, text=True, timeout=HANG_S, check=True).stdout
-    assert said.splitlines() == ["taken", "builds anyway", "free", "free"]
+    assert said.splitlines() == ["taken", "builds anyway", "free", "free", "taken"]
+    assert task._builds()._build is build_in_turn
 
 
 @pytest.mark.parametrize(
