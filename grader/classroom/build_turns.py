@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import fcntl
 import os
+import tempfile
 import time
 from contextlib import contextmanager, suppress
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from grader.colcon import runner
 
@@ -23,13 +24,13 @@ _POLL_S = 0.01
 
 
 @cache
-def lock_file() -> int:
-    """Return the descriptor of a file without a name, each byte of which is one turn.
+def lock_file() -> IO[bytes]:
+    """Return a file without a name, each byte of which is one turn.
 
     Processes that were forked after the first call share the file. The kernel releases the locks of a process when the
     process ends (F_SETLK in fcntl(2)).
     """
-    return os.memfd_create("grader-builds")
+    return tempfile.TemporaryFile()
 
 
 def turns() -> int:
