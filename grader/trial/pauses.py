@@ -20,12 +20,29 @@ if TYPE_CHECKING:
 _PAUSE = struct.Struct("=qq")
 _EARLIER_S = 1e-6
 """A pause ends this much (s) before the timer is due, since the times are not exact."""
+_AGAIN_S = 0.5
+"""If the simulator might interrupt a pause, no pause is looked for during this time (s), since this is slow."""
 
 
-def pause_s(simulation: Simulation) -> float:
-    """Return how long no node will do anything (s). Call this when all nodes are at rest. If unknown, return 0."""
-    shortest_s = min(process_pause_s(process.pid, process.pause_address) for process in simulation.node.processes)
-    return shortest_s - _EARLIER_S if shortest_s > FRAME_S and not may_interrupt(simulation) else 0.0
+class Pauses:
+    """Finds the pauses of the nodes in a simulation."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._from_s = 0.0
+
+    def pause_s(self) -> float:
+        """Return how long no node will do anything (s). Call this when all nodes are at rest. If unknown, return 0."""
+        now_s = self._simulation.now()
+        if now_s < self._from_s:
+            return 0.0
+        shortest_s = min(process_pause_s(node.pid, node.pause_address) for node in self._simulation.node.processes)
+        if shortest_s <= FRAME_S:
+            return 0.0
+        if may_interrupt(self._simulation):
+            self._from_s = now_s + _AGAIN_S
+            return 0.0
+        return shortest_s - _EARLIER_S
 
 
 def process_pause_s(pid: int, address: int) -> float:

@@ -20,7 +20,7 @@ from rosgraph_msgs.msg import Clock
 from grader.common.linux_calls import sleep_precisely
 from grader.trial.node_group import GroupThreads
 from grader.trial.patience import HandshakePatience, TickPatience
-from grader.trial.pauses import pause_s
+from grader.trial.pauses import Pauses
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.simulation import Simulation
 from grader.trial.wait import HIDDEN, doubt
@@ -72,7 +72,7 @@ class SimulatedTrial(Simulation):
         *,
         stop_at_doubt: bool,
     ) -> None:
-        self._now_s = self._pause_until_s = 0.0
+        self._now_s = 0.0
         self._followers = 0
         self._stop_at_doubt = stop_at_doubt
         super().__init__(node, start, prefixes, inputs, judged)
@@ -95,15 +95,16 @@ class SimulatedTrial(Simulation):
             self.lap("start")
             self._handshake()
             self.lap("discovery")
+            pauses, paused_until_s = Pauses(self), 0.0
             for frame in range(1, (last := round(duration_s / FRAME_S)) + 1):
                 self._now_s = frame * FRAME_S
-                if self._now_s < self._pause_until_s and frame % GRAPH_EVERY and frame != last:
+                if self._now_s < paused_until_s and frame % GRAPH_EVERY and frame != last:
                     self.frame(self._now_s)
                 else:
                     self.tick(self._now_s)
                     self._settle()
                     self._await_leaver()
-                    self._pause_until_s = self._now_s + pause_s(self)
+                    paused_until_s = self._now_s + pauses.pause_s()
                 if frame % OWN_EVERY == 0:
                     self._take_in(requests=False)
                 if frame % GRAPH_EVERY == 0:
@@ -154,7 +155,7 @@ class SimulatedTrial(Simulation):
     def _rest(self, patience: TickPatience) -> bool:
         """Before the clock advances, wait until neither the node nor the simulator has anything left to do.
 
-        Return False if this takes longer than `patience` allows.
+        Return False if this takes longer than `patience` allows: threads that wake each other appear asleep each time.
         """
         while True:
             # The main thread usually works longest. While it works, the other threads need not be checked.
@@ -168,7 +169,6 @@ class SimulatedTrial(Simulation):
                     return True
             if not asleep:
                 time.sleep(_POLL_S)
-            # Threads that keep waking up and falling asleep appear asleep each time.
             if patience.ended(time.monotonic()):
                 return False
 

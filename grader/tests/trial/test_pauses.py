@@ -23,7 +23,6 @@ in_a_cell = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sand
 NODE = """#!/usr/bin/env python3
 import rclpy
 from geometry_msgs.msg import Twist
-from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from turtlesim.msg import Color
 from turtlesim.srv import SetPen
@@ -47,7 +46,7 @@ rclpy.init()
 node = Draws()
 {listens}
 try:
-    {spins}
+    rclpy.spin(node)
 except KeyboardInterrupt:
     print("clock", node.get_clock().now().nanoseconds, "heard", node.clocks)
 """
@@ -74,13 +73,12 @@ def serve(request, response):
     return response
 node.create_service(Empty, "/serve", serve)
 """
-SPINS = "rclpy.spin(node)"
 PLAN = Plan("simulated", Pose(5.5, 5.5, 0.0), None, 4.0)
 
 
-def node(*timers: str, listens: str = "", spins: str = SPINS) -> str:
+def node(*timers: str, listens: str = "") -> str:
     """Return the source of a node with these lines in its constructor."""
-    return NODE.format(timers="".join(f"        {line}\n" for line in timers), listens=listens, spins=spins)
+    return NODE.format(timers="".join(f"        {line}\n" for line in timers), listens=listens)
 
 
 def commands(recording: Recording) -> list[tuple[float, float, float]]:
@@ -121,9 +119,8 @@ def drawn_timers(seed: int) -> list[str]:
 @in_a_cell
 @pytest.mark.parametrize("seed", range(6))
 def test_a_node_does_the_same_whether_it_gets_the_time_of_every_frame_or_not(seed: int) -> None:
-    spins = SPINS if seed % 2 else "executor = MultiThreadedExecutor(2); executor.add_node(node); executor.spin()"
     timers = drawn_timers(seed)
-    with_pauses, every_frame = (run(node(*timers, listens=listens, spins=spins), PLAN) for listens in ("", LISTENS))
+    with_pauses, every_frame = (run(node(*timers, listens=listens), PLAN) for listens in ("", LISTENS))
     assert commands(with_pauses)
     assert commands(with_pauses) == commands(every_frame)
     assert said(with_pauses) == said(every_frame)
