@@ -14,8 +14,11 @@ import importlib.util
 import shutil
 import sys
 from dataclasses import dataclass, fields
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from packaging.specifiers import SpecifierSet
 
 from grader.exercise.markers import solved, syntax_of
 
@@ -66,6 +69,9 @@ class Case:
     wall_varies: str = ""
     """The reason why two runs in wall time can have different results. If there is such a reason, the results with the
     two clocks are not compared. Usually empty."""
+    rclpy: str = ""
+    """The versions of rclpy with which a node behaves in this way, as in "<7.1.9"; empty for all versions. The case is
+    not run with another version."""
     points: float | None = None
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()
@@ -79,6 +85,11 @@ class Case:
     """Maps a check to strings that its message must contain. The key "usage" is for the message of exit code 2."""
     never: tuple[str, ...] = ()
     """Text that the report must not contain."""
+
+    @property
+    def is_of_this_rclpy(self) -> bool:
+        """Whether the installed version of rclpy is one for which the case is meant."""
+        return SpecifierSet(self.rclpy).contains(version("rclpy"))
 
 
 def read_case(folder: Path) -> Case:

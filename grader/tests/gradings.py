@@ -95,7 +95,7 @@ def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPat
 
 
 def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator:
-    """Run the test for each case.
+    """Run the test for each case that is meant for the installed version of rclpy.
 
     A case that is not in the sample runs only in `make test-all`, unless `always` is set.
     """
@@ -104,6 +104,7 @@ def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator
         [
             pytest.param(case, id=case.name, marks=() if always or case.sample else pytest.mark.exhaustive)
             for case in cases
+            if case.is_of_this_rclpy
         ],
     )
 

@@ -110,6 +110,18 @@ class Wait:
         return Cause("sleep-in-callback", text, self.where)
 
     @property
+    def refused_cause(self) -> Cause:
+        """The reason why rclpy refuses to spin in a callback (from rclpy 7.1.9 on; earlier versions wait)."""
+        text = (
+            f"{self._subject} spins inside a callback, which rclpy.spin called, and rclpy does not spin twice at once. "
+        )
+        if self.name in SPINS[:2]:
+            return Cause(
+                "spins-in-callback", f"{text}Remove the call. rclpy.spin in main calls every callback.", self.where
+            )
+        return Cause("waits-in-callback", f"{text}{self._instead}", self.where)
+
+    @property
     def _limited_cause(self) -> Cause:
         if self.name in SPINS[:2]:
             text = (

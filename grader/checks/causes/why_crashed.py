@@ -12,6 +12,7 @@ from grader.checks.causes.comma_for_dot import comma_for_dot
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.refused_calls import why_refused
 from grader.checks.causes.trailing_comma import trailing_comma
+from grader.checks.causes.waiting import SPINS, waits_in_callbacks
 from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_type
 from grader.checks.causes.why_ended import named_only, spins_in_a_thread
@@ -157,6 +158,18 @@ def _why_no_loop(scene: CrashScene) -> Cause | None:
     return Cause("asyncio-in-callback", text)
 
 
+def _why_spinning(scene: CrashScene) -> Cause | None:
+    """Return the cause if rclpy refused to spin, because another call spins the same nodes already, else None."""
+    if "already spinning" not in scene.crash.message:
+        return None
+    places = {scene.crash.where, *scene.crash.callers}
+    for wait in waits_in_callbacks(scene.evidence):
+        if wait.name in SPINS and wait.where in places:
+            return wait.refused_cause
+    text = "Another call spins the nodes already, for example in a thread, and rclpy does not spin twice at once."
+    return Cause("crash", f"{text} Spin in one place only, usually in main.")
+
+
 def _why_await(scene: CrashScene) -> Cause | None:
     """Return the cause if a function that is not `async` contains await, else None."""
     if "'await' outside async function" not in scene.crash.message:
@@ -191,7 +204,9 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "NotInitializedException": _why_no_init,
     "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": lambda scene: why_no_transition(scene) or why_refused(scene),
-    "RuntimeError": lambda scene: _why_resized(scene) or _why_no_loop(scene) or why_refused(scene),
+    "RuntimeError": lambda scene: (
+        _why_resized(scene) or _why_no_loop(scene) or _why_spinning(scene) or why_refused(scene)
+    ),
     "SIGABRT": lambda scene: spins_in_a_thread(scene.evidence),  # ROS 2 may abort if the main thread ends first
     "SIGSEGV": why_segmentation_fault,
     "SyntaxError": _why_await,

@@ -137,3 +137,25 @@ def test_a_callback_has_no_event_loop_of_asyncio(error: str, init: str, *, found
 def test_a_quality_needs_a_depth(error: str, *, found: bool) -> None:
     cause = reported(DRIVER.format(line="QoSProfile()"), error).cause
     assert ("A QoSProfile needs a depth, which is the size of the queue." in cause) == found
+
+
+SPINNING = "RuntimeError: Executor is already spinning"
+
+
+@pytest.mark.parametrize(
+    ("line", "diagnosis", "words"),
+    [
+        ("rclpy.spin_once(self)", "spins-in-callback", "spin_once spins inside a callback"),
+        ("rclpy.spin(self)", "spins-in-callback", "Remove the call. rclpy.spin in main calls every callback."),
+        ("rclpy.spin_until_future_complete(self, x)", "waits-in-callback", "pass the next step to add_done_callback."),
+    ],
+)
+def test_a_callback_cannot_spin_what_is_being_spun(line: str, diagnosis: str, words: str) -> None:
+    source = DRIVER.format(line=line)
+    called = reported(source.replace("self.count = 0", "self.create_timer(0.5, self.send)"), SPINNING)
+    assert (called.diagnosis, called.line) == (diagnosis, to_look_at(source))
+    assert words in called.cause
+    elsewhere = reported(source, SPINNING)
+    assert (elsewhere.diagnosis, elsewhere.line) == ("crash", to_look_at(source))
+    assert elsewhere.cause.startswith("Another call spins the nodes already, for example in a thread")
+    assert words not in reported(source, "RuntimeError: no").cause
