@@ -291,4 +291,4 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
 
 
 if __name__ == "__main__":
-    sys.exit(setup_errors.guarded(lambda: main(sys.argv[1:])))
+    setup_errors.run_and_exit(lambda: main(sys.argv[1:]))

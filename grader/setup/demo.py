@@ -20,7 +20,7 @@ from grader.errors import GraderError
 from grader.learner import progress
 from grader.learner.steps import needs_bash
 from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
-from grader.setup.setup_errors import MACHINE_BROKEN, guarded
+from grader.setup.setup_errors import MACHINE_BROKEN, run_and_exit
 
 STEP = "03-circle-publisher"
 FOLDER = Path("build/demo")
@@ -103,4 +103,4 @@ def grading_seconds(report: Path) -> list[tuple[str, float]]:
 
 
 if __name__ == "__main__":
-    sys.exit(guarded(main))
+    run_and_exit(main)

@@ -230,4 +230,4 @@ def _write(name: str, requirements: str) -> Path:
 
 
 if __name__ == "__main__":
-    sys.exit(setup_errors.guarded(lambda: main(Stamp(**json.loads(sys.argv[1])))))
+    setup_errors.run_and_exit(lambda: main(Stamp(**json.loads(sys.argv[1]))))

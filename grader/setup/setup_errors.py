@@ -9,12 +9,13 @@ import os
 import re
 import shlex
 import shutil
+import signal
 import sys
 import tempfile
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import Callable, List, Optional
+from typing import Callable, List, NoReturn, Optional
 
 from grader.common.system_errors import refusal, sentence
 from grader.common.terminal_text import say
@@ -47,6 +48,13 @@ _UNTRUSTED = re.compile(
 succeed after uv has failed."""
 _INDEXES = re.compile(r"^Looking in indexes: (.+)$", re.MULTILINE)
 _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
+
+
+def run_and_exit(main: Callable[[], int]) -> NoReturn:
+    """Run a program of the set-up like guarded(), and exit with its exit code."""
+    code = guarded(main)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # while Python exits, Ctrl-C would only print a traceback
+    sys.exit(code)
 
 
 def guarded(main: Callable[[], int]) -> int:

@@ -129,6 +129,17 @@ def test_ctrl_c_says_how_to_go_on(capsys: pytest.CaptureFixture[str]) -> None:
     assert "The same command continues from here" in capsys.readouterr().err
 
 
+def test_ctrl_c_while_python_exits_prints_nothing() -> None:
+    code = (
+        "import atexit, os, signal; from grader.setup import setup_errors\n"
+        "atexit.register(os.kill, os.getpid(), signal.SIGINT)\n"
+        "setup_errors.run_and_exit(lambda: 7)"
+    )
+    root = Path(setup_errors.__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (7, "", "")
+
+
 def test_a_machine_that_starts_no_process_says_nothing_about_its_pythons(monkeypatch: pytest.MonkeyPatch) -> None:
     def check_output(*_: object, **__: object) -> NoReturn:
         raise BlockingIOError(errno.EAGAIN, "x")
