@@ -39,6 +39,8 @@ TIMEOUTS = {
     "rclpy.spin_until_future_complete": 3,
 }
 """The indexes of the argument timeout_sec of methods, and of functions of rclpy (rclpy 7.1)."""
+DEADLOCK_OR_ERROR = "a deadlock, or an exception from rclpy 7.1.9 on"
+"""What happens if a callback spins. The source is judged before the version of rclpy matters."""
 LOOP = "while"
 """The `name` of a `Wait` that is a while loop whose condition calls done()."""
 THREADS = frozenset({"MultiThreadedExecutor", "Thread", "ThreadPoolExecutor", "Timer", "start_new_thread"})
@@ -87,13 +89,13 @@ class Wait:
         if self.name in SPINS[:2]:
             text = (
                 f"{self._subject} waits inside a callback, but the executor calls no other callback until this one "
-                "returns: a deadlock. Remove the call. rclpy.spin in main calls every callback."
+                f"returns: {DEADLOCK_OR_ERROR}. Remove the call. rclpy.spin in main calls every callback."
             )
             return Cause("spins-in-callback", text, self.where)
         if self.deadlock:
+            ends = DEADLOCK_OR_ERROR if self.name in SPINS else "a deadlock"
             text = (
-                f"{self._subject} waits inside a callback, so rclpy.spin receives no response: a deadlock. "
-                f"{self._instead}"
+                f"{self._subject} waits inside a callback, so rclpy.spin receives no response: {ends}. {self._instead}"
             )
             return Cause("waits-in-callback", text, self.where)
         if self.name in SERVERS:

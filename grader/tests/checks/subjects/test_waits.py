@@ -43,6 +43,12 @@ def test_a_wait_in_a_callback_fails_at_its_line(line: str, diagnosis: str, words
     assert words in finding.cause
 
 
+@pytest.mark.parametrize("call", ["rclpy.spin_once(self)", "rclpy.spin_until_future_complete(self, future)"])
+def test_only_a_wait_that_spins_may_be_refused_by_rclpy(call: str) -> None:
+    assert "a deadlock, or an exception from rclpy 7.1.9 on" in judged(f"        {call}").cause
+    assert "a deadlock, or an exception from rclpy 7.1.9 on" not in judged(WAITS).cause
+
+
 def test_a_wait_is_found_before_the_build_unless_the_node_has_threads() -> None:
     source = NODE.replace("        msg = Twist()", f"{WAITS}\n        msg = Twist()")
     early = NEVER_WAITS.judge_early(evidence(None, submission({NODE_FILE: source})), {})
