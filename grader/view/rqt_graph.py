@@ -59,6 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say(f"rqt_graph: {error}")
         return error.exit_code
     except KeyboardInterrupt:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # while Python exits, Ctrl-C would only print a traceback
         return 130
     except BrokenPipeError:
         # The reader of the output has exited, as in `rqt_graph | head`.

@@ -77,6 +77,7 @@ def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) 
         print(f"{parser.prog}: {error}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # while Python exits, Ctrl-C would only print a traceback
         return 130
     return 0
 
