@@ -124,7 +124,8 @@ def test_a_node_does_the_same_whether_it_gets_the_time_of_every_frame_or_not(see
     assert commands(with_pauses)
     assert commands(with_pauses) == commands(every_frame)
     assert said(with_pauses) == said(every_frame)
-    assert with_pauses.stdout == every_frame.stdout
+    # The times are not compared: what is printed after Ctrl-C arrives when the processor has time.
+    assert with_pauses.stdout.text == every_frame.stdout.text
 
 
 @in_a_cell
