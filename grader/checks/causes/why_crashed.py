@@ -162,9 +162,8 @@ def _why_spinning(scene: CrashScene) -> Cause | None:
     """Return the cause if rclpy refused to spin, because another call spins the same nodes already, else None."""
     if "already spinning" not in scene.crash.message:
         return None
-    places = {scene.crash.where, *scene.crash.callers}
     for wait in waits_in_callbacks(scene.evidence):
-        if wait.name in SPINS and wait.where in places:
+        if wait.name in SPINS and wait.where == scene.crash.where:
             return wait.refused_cause
     text = "Another call spins the nodes already, for example in a thread, and rclpy does not spin twice at once."
     return Cause("crash", f"{text} Spin in one place only, usually in main.")
