@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
@@ -13,7 +14,7 @@ import grader
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_NOT_JUDGING = ("tests", "benchmarks", "__pycache__", "templates")
+_NOT_JUDGING = {"tests", "benchmarks", "__pycache__", "templates"}
 
 
 @dataclass(frozen=True)
@@ -48,12 +49,13 @@ def grader_key() -> str:
     The string consists of the version, and the first 16 digits of the sha256 of all files of the package, except tests,
     benchmarks, templates and compiled modules.
     """
-    folder = Path(grader.__file__).parent
+    package = Path(grader.__file__).parent
     whole = hashlib.sha256()
-    for path in sorted(folder.rglob("*")):
-        parts = path.relative_to(folder).parts
-        if not set(parts).isdisjoint(_NOT_JUDGING) or path.suffix == ".pyc" or not path.is_file():
-            continue
-        whole.update("/".join(parts).encode() + b"\0")
-        whole.update(hashlib.sha256(path.read_bytes()).digest())
+    for folder, inner, names in os.walk(package):
+        inner[:] = sorted(set(inner) - _NOT_JUDGING)
+        for path in sorted(Path(folder, name) for name in names):
+            if path.suffix == ".pyc" or not path.is_file():
+                continue
+            whole.update(path.relative_to(package).as_posix().encode() + b"\0")
+            whole.update(hashlib.sha256(path.read_bytes()).digest())
     return f"{grader.__version__} {whole.hexdigest()[:16]}"

@@ -89,7 +89,7 @@ class Case:
     @property
     def is_of_this_rclpy(self) -> bool:
         """Whether the installed version of rclpy is one for which the case is meant."""
-        return SpecifierSet(self.rclpy).contains(version("rclpy"))
+        return not self.rclpy or SpecifierSet(self.rclpy).contains(version("rclpy"))
 
 
 def read_case(folder: Path) -> Case:

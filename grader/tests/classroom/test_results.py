@@ -140,6 +140,22 @@ def test_the_key_of_the_grader_has_its_version_and_its_sources() -> None:
     assert len(sources) == 16
 
 
+def test_the_key_of_the_grader_changes_with_each_file_that_judges(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def put(name: str, text: str) -> str:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+        return grader_key.__wrapped__()
+
+    monkeypatch.setattr("grader.__file__", str(tmp_path / "__init__.py"))
+    first = put("checks/rate.py", "1")
+    assert put("tests/checks/test_rate.py", "1") == put("checks/__pycache__/rate.pyc", "1") == first
+    (tmp_path / "checks/.#rate.py").symlink_to("the lock of an editor")
+    keys = [first, put("checks/rate.py", "2"), put("checks/again/rate.py", "2"), put("checks/table.toml", "2")]
+    assert len(set(keys)) == len(keys)
+
+
 @given(st.text(min_size=1, max_size=300).filter(lambda text: "/" not in text and "\0" not in text))
 def test_every_name_becomes_a_valid_file_name(student: str) -> None:
     name = file_name(student, "03-circle-publisher")
