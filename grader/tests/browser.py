@@ -6,12 +6,13 @@ import os
 import shutil
 from contextlib import contextmanager
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from grader.setup.machine import BROWSERS, SYSTEM_PATH
 from grader.tests.lacking import give_up
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,9 +56,19 @@ def launched(executable: str) -> Iterator[Browser]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS))
+        browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS), timeout=HANG_S * 1000)
         yield browser
         browser.close()
+
+
+def new_page(browser: Browser, **options: Any) -> Page:  # noqa: ANN401 - the options of Browser.new_page
+    """Open a page without cookies or storage of other pages.
+
+    Playwright waits for 30 s for each event of a page, which is too short on a busy machine. Here, it waits for HANG_S.
+    """
+    page = browser.new_page(**options)
+    page.set_default_timeout(HANG_S * 1000)
+    return page
 
 
 def violations(page: Page) -> list[str]:

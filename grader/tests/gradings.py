@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.tests.case import EXIT_CODES, Case, make_submission
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -23,8 +24,6 @@ GRADER = Path(sys.executable).with_name("grader")
 AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
 """The number of cases that are graded in parallel. Together with the other test processes, these cases use every
 processor."""
-HANG_S = 300.0
-"""This time (s) is longer than any time limit of the grader. A command that takes longer than this time has hung."""
 
 
 @dataclass(frozen=True)

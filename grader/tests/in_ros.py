@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 
 from grader.ros import installation
 from grader.tests.domains import own_domain
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-HANG_S = 300.0
 _RESULT = "RESULT: "
 
 

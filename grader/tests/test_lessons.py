@@ -24,7 +24,7 @@ from grader.submission.package_xml import read_manifest
 from grader.tests.console import differs, run
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
-from grader.tests.waiting import LONG_S
+from grader.tests.waiting import HANG_S, LONG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -122,7 +122,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
     env = {**os.environ, **ours, **home_of_a_reader(tmp_path)}
     Learner(tmp_path / "home").reads("start", "05")
     shell = pexpect.spawn(
-        "bash", ["--norc", "--noprofile"], env=env, cwd=tmp_path, encoding="utf-8", timeout=120, echo=False
+        "bash", ["--norc", "--noprofile"], env=env, cwd=tmp_path, encoding="utf-8", timeout=HANG_S, echo=False
     )
     for command in (step.command for step in build.steps()):
         shell.sendline(f"{command}; echo done''with")
@@ -170,11 +170,11 @@ def test_questions_about_the_kitchen_have_the_answers_shown(
     block: Block, kitchen: dict[str, str], tmp_path: Path
 ) -> None:
     shell = replace(block, text=f"$ source <(grader env)\n{block.text}")
-    answers = run(shell, tmp_path, kitchen, 120.0)
+    answers = run(shell, tmp_path, kitchen, HANG_S)
     for _ in range(5):  # On a busy machine, discovery may be slow. Then the commands run again.
         if all(differs(step.printed, printed) is None for step, printed, _ in answers):
             break
-        answers = run(shell, tmp_path, kitchen, 120.0)
+        answers = run(shell, tmp_path, kitchen, HANG_S)
     for step, printed, _ in answers:
         assert differs(step.printed, printed) is None, printed
 

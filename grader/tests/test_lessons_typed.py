@@ -20,6 +20,7 @@ from grader.authoring.console_blocks import blocks
 from grader.tests.domains import own_domain
 from grader.tests.learner.story import Learner
 from grader.tests.test_lessons import ROOT, home_of_a_reader
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -167,7 +168,7 @@ class Terminals:
             env=self.env,
             cwd=self.folder,
             encoding="utf-8",
-            timeout=60,
+            timeout=HANG_S,
             echo=False,
             dimensions=(50, 200),
         )

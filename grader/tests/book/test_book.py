@@ -16,7 +16,7 @@ from grader.cli import app
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.tests.book.served import served
-from grader.tests.browser import browser_or_reason, launched, violations
+from grader.tests.browser import browser_or_reason, launched, new_page, violations
 from grader.tests.case import ROOT
 from grader.tests.narrow import cut
 
@@ -58,7 +58,7 @@ def requests() -> list[str]:
 
 @pytest.fixture
 def page(browser: Browser, requests: list[str]) -> Iterator[Page]:
-    tab = browser.new_page(viewport={"width": 1280, "height": 900})
+    tab = new_page(browser, viewport={"width": 1280, "height": 900})
     tab.on("request", lambda request: requests.append(request.url))
     tab.on("console", lambda message: requests.append(message.text))
     tab.on("pageerror", lambda error: requests.append(str(error)))
@@ -149,13 +149,12 @@ def test_the_search_by_keyboard(page: Page, book: Path, url: str) -> None:
 
 
 def test_the_copy_button_copies_only_the_command(browser: Browser, url: str) -> None:
-    context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
-    tab = context.new_page()
+    tab = new_page(browser, permissions=["clipboard-read", "clipboard-write"])
     tab.goto(url + CIRCLE)
     tab.get_by_role("button", name="Copy the command").first.click()
     tab.get_by_text("Copied").wait_for()
     assert tab.evaluate("navigator.clipboard.readText()") == "ros2 topic info /turtle1/cmd_vel"
-    context.close()
+    tab.close()
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 360)])

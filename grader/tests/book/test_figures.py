@@ -10,7 +10,7 @@ from grader.book.figures import FIGURES
 from grader.book.lesson import lessons
 from grader.book.site import write_book
 from grader.tests.book.served import served
-from grader.tests.browser import browser_or_reason, launched, violations
+from grader.tests.browser import browser_or_reason, launched, new_page, violations
 from grader.turtlesim.turtle import FRAME_S, Turtle
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
 
 
 def opened(browser: Browser, url: str) -> Page:
-    tab = browser.new_page(viewport={"width": 1280, "height": 900})
+    tab = new_page(browser, viewport={"width": 1280, "height": 900})
     tab.goto(f"{url}03-circle-publisher/index.html")
     return tab
 

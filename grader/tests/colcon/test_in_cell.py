@@ -13,7 +13,7 @@ import pytest
 
 from grader.colcon.runner import IN_CELL
 from grader.ros.installation import environment
-from grader.tests.in_ros import HANG_S
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from pathlib import Path

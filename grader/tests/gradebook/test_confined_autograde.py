@@ -11,7 +11,8 @@ from nbclient import NotebookClient
 from grader.exercise.model import course_folder
 from grader.gradebook.confined_autograde import ConfinedKernelManager
 from grader.sandbox import bubblewrap
-from grader.tests.notebook.kernels import HANG_S, Notebook
+from grader.tests.notebook.kernels import Notebook
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,7 +35,7 @@ def submission(tmp_path: Path) -> Path:
 @pytest.fixture
 def notebook(submission: Path) -> Iterator[Notebook]:
     manager = ConfinedKernelManager(submission=str(submission))
-    patience = {"timeout": HANG_S, "startup_timeout": HANG_S}
+    patience = {"timeout": int(HANG_S), "startup_timeout": int(HANG_S)}
     client = NotebookClient(nbformat.v4.new_notebook(), km=manager, allow_errors=True, **patience)  # type: ignore[no-untyped-call]
     with client.setup_kernel(cleanup_kc=True):
         yield Notebook(client)

@@ -29,7 +29,7 @@ from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
 from grader.tests.no_ros import NO_ROS
 from grader.tests.report.reports import EVIDENCE, report
-from grader.tests.waiting import until, until_gone
+from grader.tests.waiting import HANG_S, until, until_gone
 from grader.trial.recording import Pose
 from grader.trial.trial import Plan
 
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
-PATIENCE_S = 180.0
 """The time (s) after which a wait fails."""
 
 
@@ -182,7 +181,7 @@ def test_after_two_saves_during_a_grading_only_the_last_text_is_graded(
 
     def grade(_exercise: object, submission: Submission, *_: object, **__: object) -> None:
         gradings.put(submission.files["my_robot_controller/draw_circle.py"].decode())
-        goes_on.get(timeout=PATIENCE_S)
+        goes_on.get(timeout=HANG_S)
         raise UsageError("This grading was stopped.")  # noqa: EM101
 
     monkeypatch.setattr("grader.learner.watch.grade", grade)
@@ -192,15 +191,15 @@ def test_after_two_saves_during_a_grading_only_the_last_text_is_graded(
     screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=False), console)
     with ThreadPoolExecutor(1) as pool, closing(events):
         shown = pool.submit(screen.show, events, "")
-        gradings.get(timeout=PATIENCE_S)
+        gradings.get(timeout=HANG_S)
         for texts in (["x = 1\n", "x = 2\n"], ["x = 3\n", "x = 1\n"]):
             for text in texts:
                 node_of(package).write_text(text)
             goes_on.put(None)
-            assert gradings.get(timeout=PATIENCE_S) == texts[-1]
+            assert gradings.get(timeout=HANG_S) == texts[-1]
         keys.put("q")
         goes_on.put(None)
-        assert shown.result(PATIENCE_S) is None
+        assert shown.result(HANG_S) is None
     assert gradings.empty()
 
 

@@ -13,13 +13,12 @@ import pytest
 
 from grader.learner import watch
 from grader.learner.watch import Events, folders
-from grader.tests.waiting import until
+from grader.tests.waiting import HANG_S, until
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 ROOT = Path(__file__).resolve().parents[3]
-PATIENCE_S = 180.0
 """The time (s) after which a wait fails."""
 
 
@@ -78,7 +77,7 @@ def test_a_folder_that_is_removed_as_soon_as_it_is_watched_is_a_save(
             return folders(top)
         calls.append(top)
         if len(calls) == 2:
-            yielded.wait(PATIENCE_S)
+            yielded.wait(HANG_S)
             package.rename(package.with_name("kept-aside"))
         return folders(top)
 
@@ -134,7 +133,7 @@ def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, mo
         stop_event.wait()  # without this, the folder would be watched again, and another save would be reported
 
     def keys() -> Iterator[str]:
-        assert saved.wait(PATIENCE_S)
+        assert saved.wait(HANG_S)
         yield "h"
         reported.set()
         yield ""
@@ -143,5 +142,5 @@ def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, mo
     events = Events(partial(next, keys()))
     events.watch(package)
     with closing(events):
-        assert reported.wait(PATIENCE_S)
+        assert reported.wait(HANG_S)
         assert [happened.kind for happened in events] == ["saved", "key"]

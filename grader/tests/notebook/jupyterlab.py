@@ -12,13 +12,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.tests.waiting import HANG_S
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from playwright.sync_api import Page
 
 STARTED = re.compile(r"http://127\.0\.0\.1:(\d+)/lab\?token=")
-START_S = 300.0
 
 
 @contextmanager
@@ -58,7 +59,7 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
 
     threading.Thread(target=listen, daemon=True).start()
     try:
-        ready.wait(START_S)
+        ready.wait(HANG_S)
         assert address, "".join(said)[-3000:]
         yield f"{address[0]}/lab/tree/PATH?token={token}"
     finally:

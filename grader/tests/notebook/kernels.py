@@ -13,13 +13,13 @@ from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 
 from grader.notebook.kernel import kernelspec
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
 
-HANG_S = 180
 """The time limit for a cell, and for the start of a kernel (s)."""
 
 
@@ -68,8 +68,8 @@ def open_notebook(folder: Path) -> Iterator[Notebook]:
         client = NotebookClient(
             nbformat.v4.new_notebook(),  # type: ignore[no-untyped-call]
             km=CourseKernel(transport="ipc", ip=f"{sockets}/kernel"),
-            timeout=HANG_S,
-            startup_timeout=HANG_S,
+            timeout=int(HANG_S),
+            startup_timeout=int(HANG_S),
             allow_errors=True,
             resources={"metadata": {"path": str(folder)}},
         )

@@ -11,13 +11,12 @@ import pytest
 from grader.exercise.markers import HASH, solved
 from grader.exercise.model import course_folder
 from grader.notebook.kernel import DISPLAY_NAME, install
-from grader.tests.browser import browser_or_reason, launched
+from grader.tests.browser import browser_or_reason, launched, new_page
 from grader.tests.notebook.jupyterlab import run_all, serving, type_cell
 
 STEP = "03-circle-publisher"
 ROOT = course_folder().parent
 NODE = "my_robot_controller/my_robot_controller/draw_circle.py"
-DEADLINE_MS = 240_000.0
 
 
 @pytest.mark.exhaustive
@@ -30,8 +29,7 @@ def test_a_student_solves_the_released_notebook(tmp_path: Path, monkeypatch: pyt
     shutil.copytree(ROOT / "exercises" / STEP, tmp_path / "work" / STEP)
     pictures = Path(os.environ.get("SCREENSHOTS") or tmp_path)
     with serving(tmp_path / "work", tmp_path) as address, launched(executable) as browser:
-        page = browser.new_page(viewport={"width": 1280, "height": 1000})
-        page.set_default_timeout(DEADLINE_MS)
+        page = new_page(browser, viewport={"width": 1280, "height": 1000})
         page.goto(address.replace("PATH", f"{STEP}/{STEP}.ipynb"))
         page.get_by_role("heading", name="Step 03: draw a circle").first.wait_for()
         # The kernel that the notebook names is installed, so JupyterLab does not open a dialog to choose a kernel.

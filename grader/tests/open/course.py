@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.tests.browser import new_page
 from grader.tests.case import ROOT
 from grader.tests.waiting import HANG_S
 
@@ -99,8 +100,7 @@ class Course:
 
     def opened(self, browser: Browser, path: str = "", width: int = 1400) -> Page:
         """Open a page in a new window without cookies or storage of other windows."""
-        tab = browser.new_page(viewport={"width": width, "height": 900})
-        tab.set_default_timeout(HANG_S * 1000)
+        tab = new_page(browser, viewport={"width": width, "height": 900})
         tab.goto(f"http://{self.host}/{path}#{self.token}")
         tab.get_by_text("Live", exact=True).wait_for()
         return tab

@@ -15,6 +15,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from grader.open.desk_server import LARGEST
+from grader.tests.browser import new_page
 from grader.tests.open.course import CIRCLE
 from grader.tests.ros2.world import children
 from grader.tests.waiting import HANG_S
@@ -77,7 +78,7 @@ def test_a_request_that_is_not_the_pages_is_refused(begun: Course, wrong: dict[s
 
 def evil(browser: Browser, body: str) -> Page:
     """Open a page of another site."""
-    tab = browser.new_page()
+    tab = new_page(browser)
     tab.route("http://evil.example/", lambda route: route.fulfill(body=body, content_type="text/html"))
     tab.goto("http://evil.example/")
     return tab
@@ -202,7 +203,7 @@ def command_line(pid: int) -> bytes:
 
 
 def test_a_wrong_address_says_so(begun: Course, browser: Browser) -> None:
-    tab = browser.new_page()
+    tab = new_page(browser)
     tab.goto(f"http://{begun.host}/{CIRCLE}/index.html#{'x' * 22}")
     tab.get_by_text("Open the address that grader open has printed").wait_for()
     tab.close()

@@ -9,7 +9,7 @@ import pytest
 from grader.report.html import save_html
 from grader.report.html_class import save_class_page
 from grader.report.json import to_json
-from grader.tests.browser import browser_or_reason, launched
+from grader.tests.browser import browser_or_reason, launched, new_page
 from grader.tests.report.pages import GIVEN
 from grader.tests.report.reports import report, report_of
 
@@ -57,7 +57,7 @@ def page(browser: Browser, problems: list[str]) -> Iterator[Page]:
         problems.append(dialog.message)
         dialog.dismiss()
 
-    tab = browser.new_page(viewport={"width": 1280, "height": 900})
+    tab = new_page(browser, viewport={"width": 1280, "height": 900})
     tab.on("pageerror", lambda error: problems.append(str(error)))
     tab.on("console", lambda message: problems.append(message.text))
     tab.on("dialog", note_dialog)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import pytest
 
-from grader.tests.browser import violations
+from grader.tests.browser import new_page, violations
 from grader.tests.narrow import cut
 from grader.tests.report.pages import GIVEN, opened, unfold
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def test_the_page_is_complete_without_javascript(browser: Browser, pages: Path) -> None:
-    tab = browser.new_page(java_script_enabled=False)
+    tab = new_page(browser, java_script_enabled=False)
     tab.goto((pages / "failed.html").as_uri())
     assert not tab.locator(".player").is_visible()
     assert tab.locator("svg.canvas").is_visible()

@@ -17,7 +17,7 @@ from grader.setup import machine
 from grader.tests.both_worlds import of_the_wheels
 from grader.tests.domains import own_domain
 from grader.tests.ros2.world import World
-from grader.tests.waiting import HANG_S, until
+from grader.tests.waiting import LONG_S, until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -94,7 +94,7 @@ def test_two_real_users(everybodys_folder: Path) -> None:
             extra_groups=[],
             capture_output=True,
             text=True,
-            timeout=4 * HANG_S,
+            timeout=LONG_S,
             check=False,
         )
         if "Permission denied" in done.stderr and machine.closed_folder(sys.prefix):

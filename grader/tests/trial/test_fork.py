@@ -9,7 +9,7 @@ import subprocess
 import threading
 
 from grader.common.linux_calls import pidfd_open
-from grader.tests.in_ros import HANG_S
+from grader.tests.waiting import HANG_S
 from grader.trial.fork import STARTED, Fork
 
 

@@ -14,7 +14,7 @@ import pytest
 import grader.trial
 from grader.sandbox import bubblewrap
 from grader.sandbox.limits import NODE_LIMITS
-from grader.tests.in_ros import HANG_S
+from grader.tests.waiting import HANG_S
 from grader.trial import launchers
 
 if TYPE_CHECKING:

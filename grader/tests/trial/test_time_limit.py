@@ -15,8 +15,8 @@ from grader.errors import MachineError
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
-from grader.tests.in_ros import HANG_S
 from grader.tests.trial.made_conductor import READY, replace_conductor
+from grader.tests.waiting import HANG_S
 from grader.trial import time_limit
 from grader.trial.conductor_process import PlainConductor
 from grader.trial.recording import Pose

@@ -14,13 +14,13 @@ from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
 from turtlesim.action import RotateAbsolute
 
+from grader.tests.waiting import HANG_S
 from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-HANG_S = 120.0
 STATUS = {
     GoalStatus.STATUS_SUCCEEDED: "succeeded",
     GoalStatus.STATUS_CANCELED: "canceled",

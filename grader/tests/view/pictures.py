@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 from grader.tests.both_worlds import OUR_TURTLESIM
-from grader.tests.browser import find_browser, launched
+from grader.tests.browser import find_browser, launched, new_page
 from grader.tests.ros2.world import SOLUTION, World, environment
 
 FILE = Path(__file__).parents[3] / "course/images/view.png"
@@ -41,7 +41,7 @@ def take(world: World, browser: str) -> None:
     url = next(word for line in simulator.lines for word in line.split() if word.startswith("http://"))
     world.start(f"python3 {SOLUTION}/my_robot_controller/draw_circle.py", "Draw")
     with launched(browser) as started:
-        page = started.new_page(viewport={"width": WIDTH, "height": HEIGHT}, color_scheme="light")
+        page = new_page(started, viewport={"width": WIDTH, "height": HEIGHT}, color_scheme="light")
         page.goto(url)
         page.locator(".arrow.flows[data-from='/draw_circle']").wait_for()
         page.locator("[data-topic='/turtle1/cmd_vel'] .rate", has_text="2 Hz").wait_for()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 
 from grader.tests.both_worlds import OUR_TURTLESIM
-from grader.tests.waiting import HANG_S
+from grader.tests.browser import new_page
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -32,8 +32,7 @@ def url(running: Running) -> str:
 
 
 def opened(browser: Browser, url: str) -> Page:
-    tab = browser.new_page(viewport={"width": 1000, "height": 700})
-    tab.set_default_timeout(HANG_S * 1000)
+    tab = new_page(browser, viewport={"width": 1000, "height": 700})
     tab.goto(url)
     tab.get_by_role("status").get_by_text("Live").wait_for()
     return tab

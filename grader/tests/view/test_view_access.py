@@ -10,6 +10,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from grader.tests.browser import new_page
 from grader.tests.view.tab import VIEW, address, live, opened, url
 from grader.tests.waiting import HANG_S, until
 
@@ -52,7 +53,7 @@ def test_a_connection_with_a_wrong_origin_host_or_token_is_refused(system: World
 
 def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: World) -> None:
     host, _, path = live(system)
-    tab = browser.new_page()
+    tab = new_page(browser)
     tab.route("http://evil.example/", lambda route: route.fulfill(body="<p>evil</p>", content_type="text/html"))
     tab.goto("http://evil.example/")
     opens = """way => new Promise(resolve => {
@@ -74,7 +75,7 @@ def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: Wor
 
 
 def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: World) -> None:
-    tab = browser.new_page()
+    tab = new_page(browser)
     tab.goto(address(system)[:-3] + "xyz")
     tab.get_by_text("This is not the address of the running simulator.").wait_for()
     tab.close()
@@ -92,7 +93,7 @@ def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: 
     assert address != url(simulator)
     tab = opened(browser, address)
     tab.wait_for_url(url(simulator), timeout=1000 * HANG_S)  # tab.url changes only while Playwright handles events
-    second = browser.new_page()
+    second = new_page(browser)
     second.goto(address)
     second.get_by_text("This is not the address of the running simulator.").wait_for()
     second.close()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.tests.browser import violations
+from grader.tests.browser import new_page, violations
 from grader.tests.narrow import cut
 from grader.tests.ros2.world import SOLUTION
 from grader.tests.view.tab import VIEW, address, drawn, live, opened, turtle, url
@@ -222,7 +222,7 @@ def test_axe_finds_nothing(page: Page, system: World, scheme: str) -> None:
 
 def test_nothing_goes_wrong_in_the_tab_and_nothing_is_requested_of_others(browser: Browser, system: World) -> None:
     said: list[str] = []
-    tab = browser.new_page()
+    tab = new_page(browser)
     tab.on("pageerror", lambda error: said.append(str(error)))
     tab.on("console", lambda message: said.append(message.text))
     tab.on("requestfailed", lambda request: said.append(request.url))
