@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 COUNTED = r"(?:of|points?|scores?|submissions?|students?|checks?|differences|(?:not )?passed|failed|to grade|changed)"
 NUMBER = re.compile(rf"(?<!\d)(?<!\d/)\d+(?:\.\d+)?(?!\.?\d)(?!/\d)(?! {COUNTED}\b)")
 """A number that may differ from run to run, such as a time. A number of points, such as 10/10, may not."""
+MINUTES = re.compile(r"\b(?:\d+h )?\d+min (?=\d+s\b)")
+"""What colcon puts before the seconds of a build that took more than a minute, as in "1min 13s"."""
 END = "--- the end of what one command printed ---"
 
 
@@ -61,4 +63,4 @@ def differs(shown: tuple[str, ...], printed: str) -> str | None:
 
 
 def _plain(line: str) -> str:
-    return " ".join(NUMBER.sub("#", line).split())
+    return " ".join(NUMBER.sub("#", MINUTES.sub("", line)).split())

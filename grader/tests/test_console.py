@@ -7,6 +7,7 @@ import pytest
 
 from grader.authoring.console_blocks import Block, Step, blocks
 from grader.tests.console import differs, run
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,7 +48,7 @@ def test_output_without_a_command_is_an_error() -> None:
 
 def test_commands_share_a_shell(tmp_path: Path) -> None:
     block = Block("console", "", "$ x=5; cd /\n$ printf $x$PWD\n$ (exit 3)\n")
-    results = run(block, tmp_path, os.environ, 10.0)
+    results = run(block, tmp_path, os.environ, HANG_S)
     assert [(printed, code) for _, printed, code in results] == [("", 0), ("5/", 0), ("", 3)]
 
 
@@ -68,6 +69,12 @@ def test_commands_share_a_shell(tmp_path: Path) -> None:
 )
 def test_what_is_shown_must_be_printed_in_that_order(shown: tuple[str, ...], wrong: str | None) -> None:
     assert differs(shown, "a 1\nb\nc\nd\n") == wrong
+
+
+@pytest.mark.parametrize("duration", ["0.61s", "12.3s", "1min 0s", "1min 13s", "2h 0min 59s"])
+def test_the_duration_of_a_build_is_not_compared(duration: str) -> None:
+    assert differs(("1 package finished [1.75s]",), f"1 package finished [{duration}]") is None
+    assert differs(("1 package finished [1.75s]",), f"1 package failed [{duration}]") is not None
 
 
 @pytest.mark.parametrize(

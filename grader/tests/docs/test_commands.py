@@ -74,7 +74,7 @@ def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path)
     environment = environment_of(checkout)
     for earlier in CONSOLE[page][:number]:  # a reader has run the previous blocks first
         copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
-        run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
+        run(Block("console", "", "\n".join(copies)), checkout, environment, LONG_S)
     for step, printed, exit_code in run(without_set_up(CONSOLE[page][number]), checkout, environment, LONG_S):
         assert exit_code == bool(FAILS.match(step.command)), f"{step.command}\n{printed}"
         assert "Traceback" not in printed
