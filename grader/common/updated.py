@@ -30,18 +30,25 @@ def updated() -> bool:
     """
     now = time.time()
     try:
-        start = _start(now)
+        start = _start()
     except OSError:
         return False
     return any(start < _changed(path) <= now for path in _modules())
 
 
-def _start(now: float) -> float:
+def _start() -> float:
     """Return the time at which this process was started."""
     ticks = int(Path("/proc/self/stat").read_text("utf-8", "replace").rpartition(")")[2].split()[_START])
     per_second = os.sysconf("SC_CLK_TCK")
-    # The kernel rounds the number of ticks down.
-    return now - time.clock_gettime(time.CLOCK_BOOTTIME) + (ticks + 1) / per_second
+    # The kernel rounds the number of ticks down. A busy machine may interrupt this process between the two clocks.
+    return min(_measured_boot() for _ in range(3))[1] + (ticks + 1) / per_second
+
+
+def _measured_boot() -> tuple[float, float]:
+    """Return the duration of this measurement, and the time at which the machine was started."""
+    before = time.clock_gettime(time.CLOCK_BOOTTIME)
+    now = time.time()
+    return time.clock_gettime(time.CLOCK_BOOTTIME) - before, now - before
 
 
 def _modules() -> list[str]:

@@ -38,7 +38,7 @@ def test_a_change_after_now_is_not_an_update(tmp_path: Path, monkeypatch: pytest
 
 
 def test_a_machine_that_tells_no_start_hides_no_other_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_more_files(_: float) -> float:
+    def no_more_files() -> float:
         raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
 
     monkeypatch.setattr(tested, "_start", no_more_files)
@@ -46,11 +46,23 @@ def test_a_machine_that_tells_no_start_hides_no_other_error(monkeypatch: pytest.
 
 
 def test_the_start_is_that_of_the_process() -> None:
-    code = "import time; from grader.common.updated import _start; now = time.time(); print(_start(now), now)"
+    code = "import time; from grader.common.updated import _start; print(_start(), time.time())"
     before = time.time()
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     start, now = map(float, done.stdout.split())
     assert before - 0.02 <= start <= now
+
+
+def test_an_interruption_between_the_clocks_does_not_change_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    start, clock, interruptions_s = tested._start(), time.time, [1.0]
+
+    def interrupted() -> float:
+        time.sleep(interruptions_s.pop() if interruptions_s else 0.0)
+        return clock()
+
+    monkeypatch.setattr(time, "time", interrupted)
+    assert abs(tested._start() - start) < 0.5
+    assert not interruptions_s
 
 
 def test_the_modules_are_those_that_commands_import() -> None:
