@@ -40,7 +40,7 @@ def _start() -> float:
     """Return the time at which this process was started."""
     ticks = int(Path("/proc/self/stat").read_text("utf-8", "replace").rpartition(")")[2].split()[_START])
     per_second = os.sysconf("SC_CLK_TCK")
-    # The kernel rounds the number of ticks down. A busy machine may interrupt this process between the two clocks.
+    # A busy machine may interrupt a measurement, so the shortest counts. The kernel rounds the number of ticks down.
     return min(_measured_boot() for _ in range(3))[1] + (ticks + 1) / per_second
 
 
