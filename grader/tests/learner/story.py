@@ -23,7 +23,6 @@ ROOT = Path(__file__).resolve().parents[3]
 GRADER = str(Path(sys.executable).with_name("grader"))
 LAST = list(catalogue())[-1]
 FIRST_TO_COPY = "03-circle-publisher"
-"""The maximum time for one verdict on a busy machine (s)."""
 
 
 class Learner:

@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
-"""The time (s) after which a wait fails."""
 
 
 @pytest.fixture

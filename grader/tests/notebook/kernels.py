@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-"""The time limit for a cell, and for the start of a kernel (s)."""
-
-
 class CourseKernel(AsyncKernelManager):
     """Starts the course's kernel, whether or not it is installed for the current user."""
 
