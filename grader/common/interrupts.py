@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from types import FrameType
 
 _STOPS: tuple[int, ...] = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -41,8 +41,8 @@ def stops_deferred() -> Iterator[None]:
 def raise_lost_stops() -> None:
     """From now on, raise a KeyboardInterrupt again if Python would otherwise only print it and discard it.
 
-    Python discards an exception that is raised in a callback of `os.fork` or in `__del__`, and the command would
-    continue as if nobody had pressed Ctrl-C.
+    Python discards an exception that is raised in a callback of `os.fork`, in `__del__` or in this hook, and the
+    command would continue as if nobody had pressed Ctrl-C.
     """
     sys.unraisablehook = _raise_again
 
@@ -55,7 +55,10 @@ def _raise_again(discarded: sys.UnraisableHookArgs) -> None:
 
 
 def _raise_soon(lost: KeyboardInterrupt) -> None:
-    def again(_number: int, _frame: FrameType | None) -> None:
+    def again(_number: int, frame: FrameType | None) -> None:
+        if _is_during(frame, _raise_again, discard):  # Python would only print the exception
+            signal.setitimer(signal.ITIMER_REAL, _SOON_S)
+            return
         signal.signal(signal.SIGALRM, handler)
         signal.setitimer(signal.ITIMER_REAL, *rest)
         raise lost
@@ -68,3 +71,10 @@ def _raise_soon(lost: KeyboardInterrupt) -> None:
     sys.unraisablehook = discard
     handler = signal.signal(signal.SIGALRM, again)
     rest = signal.setitimer(signal.ITIMER_REAL, _SOON_S)
+
+
+def _is_during(frame: FrameType | None, *hooks: Callable[[sys.UnraisableHookArgs], None]) -> bool:
+    codes = [hook.__code__ for hook in hooks]
+    while frame and frame.f_code not in codes:
+        frame = frame.f_back
+    return frame is not None

@@ -11,9 +11,17 @@ from typing import TYPE_CHECKING
 from grader.common.private_folder import private_folder
 from grader.errors import MachineError
 from grader.graph.announcements import participant_ports
+from grader.ros.domain import HIGHEST
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
+
+_DOMAINS: tuple[int, ...] = (*range(1, 102), *range(215, HIGHEST + 1))
+"""The domains whose ports are outside of the range from which Linux assigns ports to any program, 32768 to 60999."""
+_ALL_IN_USE = (
+    "All ROS domains whose ports Linux does not assign to other programs (1 to 101 and 215 to 232) are in use by other "
+    "trials or tests: wait until one has ended."
+)
 
 
 def own_domain(stack: ExitStack) -> int:
@@ -24,8 +32,7 @@ def own_domain(stack: ExitStack) -> int:
     Raises:
         MachineError: all domains are in use, or the folder of the lock files cannot be used.
     """
-    # The ports of higher domains are in the range from which Linux assigns ports to any program.
-    for domain in range(1, 102):
+    for domain in _DOMAINS:
         file = stack.enter_context(lock_file(domain).open("w"))
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -35,8 +42,7 @@ def own_domain(stack: ExitStack) -> int:
         if not in_use:
             return domain
         file.close()
-    message = "All ROS domains from 1 to 101 are in use by other trials or tests: wait until one has ended."
-    raise MachineError(message)
+    raise MachineError(_ALL_IN_USE)
 
 
 def lock_file(domain: int) -> Path:

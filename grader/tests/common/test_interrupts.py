@@ -88,5 +88,12 @@ def test_an_interrupt_that_python_discards_twice_is_raised_again() -> None:
     assert outcome_of(code) == (0, "interrupted (0.0, 0.0) True\n", "")
 
 
+def test_an_interrupt_is_not_raised_where_python_would_discard_it_a_third_time() -> None:
+    """On a busy machine, it may be time to raise it while another discarded exception is being handled."""
+    alarm = "signal.raise_signal(signal.SIGALRM) if frame.f_code.co_name == 'discard' else None"
+    code = DISCARDED_AT_A_FORK.replace("AFTER", f"(sys.settrace(lambda frame, *_: {alarm}), 1 / 0)")
+    assert outcome_of(f"import sys{code}") == (0, "interrupted (0.0, 0.0) True\n", "")
+
+
 def test_ctrl_c_while_a_commands_node_is_created_prints_nothing_and_the_node_is_removed() -> None:
     assert outcome_of(NODE_INTERRUPTED) == (0, "interrupted False\n", "")

@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pexpect
 import pytest
@@ -15,21 +16,25 @@ import pytest
 from grader.errors import UsageError
 from grader.learner import steps
 from grader.learner.run_node import program_of
-from grader.tests.domains import own_domain
+from grader.tests.domains import separate_domain
 from grader.tests.learner.story import Learner
 from grader.tests.waiting import until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 NODE = "src/my_robot_controller/my_robot_controller/draw_circle.py"
 
 
 @pytest.fixture(scope="module")
-def learner(tmp_path_factory: pytest.TempPathFactory) -> Learner:
+def learner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Learner]:
     """Create a learner who has solved step 03."""
     learner = Learner(tmp_path_factory.mktemp("home"))
-    learner.env["ROS_DOMAIN_ID"] = str(own_domain())
     learner.reads("start", "03")
     learner.solves("03-circle-publisher")
-    return learner
+    with separate_domain() as domain:
+        learner.env["ROS_DOMAIN_ID"] = str(domain)
+        yield learner
 
 
 def children_of(pid: int) -> list[int]:

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.both_worlds import of_the_wheels
-from grader.tests.ros2.world import World, environment
+from grader.tests.ros2.world import World
+from grader.tests.ros2.world import world as new_world
 from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
@@ -33,9 +34,7 @@ COMMANDS = (
 
 @pytest.fixture
 def world(tmp_path: Path) -> Iterator[World]:
-    made = World(tmp_path, environment(tmp_path))
-    yield made
-    made.end()
+    yield from new_world(tmp_path)
 
 
 def announce(world: World, name: bytes) -> None:

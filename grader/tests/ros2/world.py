@@ -17,7 +17,7 @@ from typing import IO, TYPE_CHECKING
 
 from grader.ros import installation, underlay
 from grader.tests.both_worlds import PATH, REAL_ROS2, SOURCED_ENV
-from grader.tests.domains import own_domain
+from grader.tests.domains import own_domain, separate_domain
 from grader.tests.waiting import HANG_S, only_child
 
 if TYPE_CHECKING:
@@ -176,11 +176,12 @@ def world(home: Path) -> Iterator[World]:
     All processes end when the tests that use the yielded object have ended.
     """
     home.mkdir(parents=True, exist_ok=True)
-    made = World(home, environment(home))
-    try:
-        yield made
-    finally:
-        made.end()
+    with separate_domain() as domain:
+        made = World(home, environment(home, domain))
+        try:
+            yield made
+        finally:
+            made.end()
 
 
 def build(home: Path, env: dict[str, str]) -> Path:

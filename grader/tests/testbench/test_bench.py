@@ -15,6 +15,7 @@ from grader.testbench import bench
 from grader.testbench.bench import uses_one_participant
 from grader.tests.testbench.bench_runs import STEP, TESTS, run, spec
 from grader.tests.waiting import HANG_S, until_gone
+from grader.trial import own_domain
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -185,6 +186,14 @@ def test_it():
 @pytest.mark.parametrize("in_cell", [True, False])
 def test_nodes_in_two_contexts_discover_each_other(files: dict[str, bytes], in_cell: bool) -> None:
     (ended,) = run(spec(right_runs=1), {**files, TESTS: TWO_CONTEXTS.encode()}, in_cell=in_cell)
+    assert (ended.exit_code, ended.message) == (0, "")
+
+
+def test_without_a_cell_nodes_discover_each_other_if_all_lower_domains_are_in_use(
+    files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(own_domain, "_DOMAINS", range(215, 233))
+    (ended,) = run(spec(right_runs=1), {**files, TESTS: TWO_CONTEXTS.encode()}, in_cell=False)
     assert (ended.exit_code, ended.message) == (0, "")
 
 
