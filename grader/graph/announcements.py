@@ -69,9 +69,20 @@ def participant_ports(domain: int) -> set[int]:
     The ports follow DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
     """
     first = 7400 + 250 * domain
+    # The last ports of domain 101 are in the range from which Linux assigns ports to any program.
+    end = _first_assigned() if first < _first_assigned() < first + 250 else first + 250
     ports: set[int] = set()
     for table in ("/proc/net/udp", "/proc/net/udp6"):
         with suppress(OSError):
             rows = Path(table).read_text("ascii").splitlines()[1:]
             ports.update(int(row.split()[1].rpartition(":")[2], 16) for row in rows)
-    return {port for port in ports if 10 <= port - first < 250 and port % 2 == 0}
+    return {port for port in ports if first + 10 <= port < end and port % 2 == 0}
+
+
+@cache
+def _first_assigned() -> int:
+    """Return the first of the ports that Linux assigns to programs that do not choose a port."""
+    try:
+        return int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text("ascii").split()[0])
+    except (OSError, ValueError, IndexError):
+        return 32768

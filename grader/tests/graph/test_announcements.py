@@ -13,7 +13,7 @@ from grader.tests.domains import own_domain
 from grader.tests.waiting import HANG_S
 
 PORTS_OF_A_DOMAIN = 250
-OTHER, NEXT = 60, 230
+OTHER, NEXT = 60, 100
 """The distances of ports from the first participant's port. No test has enough participants in a domain to use them."""
 
 
@@ -50,6 +50,19 @@ def test_the_ports_of_participants_are_counted_and_no_others(domain: int) -> Non
         closing(listening(first + PORTS_OF_A_DOMAIN + NEXT)),  # the next domain
     ):
         assert participant_ports(domain) - before == {first + OTHER}
+
+
+def test_a_port_that_linux_assigns_to_any_program_is_not_counted(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Such ports are in domain 101, whose last 132 ports are above 32767."""
+    first = metatraffic(domain)
+    before = participant_ports(domain)
+    with closing(listening(first + OTHER)), closing(listening(first + NEXT)):
+        assert participant_ports(domain) - before == {first + OTHER, first + NEXT}
+        monkeypatch.setattr(announcements, "_first_assigned", lambda: first + NEXT)
+        assert participant_ports(domain) - before == {first + OTHER}
+        # In a domain that the user has chosen in the middle of these ports, all of its ports are counted.
+        monkeypatch.setattr(announcements, "_first_assigned", lambda: first - 10)
+        assert participant_ports(domain) - before == {first + OTHER, first + NEXT}
 
 
 def test_an_announcement_is_passed_on_only_when_the_participant_exists(domain: int) -> None:
