@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from contextlib import ExitStack
 
 _DOMAINS: tuple[int, ...] = (*range(1, 102), *range(215, HIGHEST + 1))
-"""The domains whose ports are outside of the range from which Linux assigns ports to any program, 32768 to 60999."""
+"""The domains whose ports are outside of the range from which Linux assigns ports to any program, 32768 to 60999. Of
+domain 101, this is true for the ports of the first 54 participants."""
 _ALL_IN_USE = (
     "All ROS domains whose ports Linux does not assign to other programs (1 to 101 and 215 to 232) are in use by other "
     "trials or tests: wait until one has ended."
