@@ -181,6 +181,10 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
 
 def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
     """Return the cause of an exception that is typical of circle fitting, or None."""
+    of_circle = any(each.id == id_ and each.arc for each in evidence.trial.calls.points)
+    if of_circle and crash.error == "ValueError" and _is_raise(evidence, crash.where):
+        cause = "Your own code raises this error for these points, although they form a circle."
+        return Cause("refuses-circle", cause)
     if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
         arcs = {each.id for each in evidence.trial.calls.points if each.arc and each.id != id_}
         if any(each.id in arcs and each.values is not None for each in evidence.run.called or ()):
@@ -189,10 +193,6 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
     if crash.error == "LinAlgError" and evidence.code.calls("solve"):
         cause = "solve needs exactly as many equations as unknowns. lstsq accepts more equations, one for each point."
         return Cause("lstsq-result", cause)
-    of_circle = any(each.id == id_ and each.arc for each in evidence.trial.calls.points)
-    if of_circle and crash.error == "ValueError" and _is_raise(evidence, crash.where):
-        cause = "Your own code raises this error for these points, although they form a circle."
-        return Cause("refuses-circle", cause)
     stacks = evidence.code.calls("vstack")
     if stacks and crash.error == "LinAlgError":
         cause = "vstack puts the arrays below each other. The matrix needs one row for each point, with three columns."

@@ -188,6 +188,13 @@ def test_the_source_and_the_exception_show_the_cause(
     assert words not in told(judged("whole", raised("whole", errors[1]), near))
 
 
+def test_a_raise_of_the_student_is_blamed_before_lists() -> None:
+    error = raised("lists", "ValueError: a circle needs four points")
+    code = source(line="raise ValueError('a circle needs four points')")
+    assert judged("lists", error, code, others=(RIGHT,)).diagnosis == "refuses-circle"
+    assert judged("lists", error, source(line="int('x')"), others=(RIGHT,)).diagnosis == "lists-refused"
+
+
 @pytest.mark.parametrize(
     ("error", "check", "told"),
     [
