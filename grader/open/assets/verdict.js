@@ -39,8 +39,9 @@ export class Verdict {
     const made = state.line && !state.problem ? await fragment("/verdict") : null;
     // Another verdict may have arrived in the meantime.
     if (this.number !== state.number) return;
-    const parts = made ? [...made.body.querySelectorAll("[data-key]")] : [];
-    const runs = made ? JSON.parse(made.getElementById("data").textContent) : [];
+    const parts = [...made?.querySelectorAll("[data-key]") ?? []];
+    // While the details of a first verdict are being drawn, the response is empty. A new number follows.
+    const runs = JSON.parse(made?.getElementById("data")?.textContent ?? "[]");
     const data = (part) => part.dataset.key.startsWith("run-") ? runs[Number(part.dataset.key.slice(4)) - 1] : null;
     update(this.details, parts.map((part) => ({
       key: part.dataset.key,

@@ -196,3 +196,19 @@ def test_two_browsers_show_the_same_verdict_and_hints(begun: Course, browser: Br
     assert problems == []
     again.close()
     second.close()
+
+
+def test_a_page_that_asks_before_the_details_are_drawn_gets_them_later(begun: Course, browser: Browser) -> None:
+    begun.save("2.0", "3.0")
+    page = begun.opened(browser)
+    verdict(page, "Not passed yet")
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    # This is the server's response until the details are drawn.
+    page.route("**/verdict", lambda route: route.fulfill(content_type="text/html", body=""), times=1)
+    with page.expect_response("**/verdict"):
+        page.reload()
+    begun.save()
+    page.locator("#details [data-key]").first.wait_for()
+    assert problems == []
+    page.close()
