@@ -23,6 +23,7 @@ from grader.graph.graph import DEBUG_TOPICS
 from grader.graph.names import hidden
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error
+from grader.ros.in_order import InOrder
 from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Turn
 from grader.view.rates import Arrivals
 
@@ -78,6 +79,7 @@ class Ears:
         self._leave_s = math.inf
         with stops_deferred():
             self._executor = SingleThreadedExecutor()
+        self._calls = InOrder(self._executor)
         self._executor.add_node(node)
         node.create_timer(LOOKED_EVERY_S, self._look)
         self._stop = threading.Event()
@@ -100,8 +102,8 @@ class Ears:
                 self._executor.spin_once(timeout_sec=1.0)
 
     def later(self, call: Callable[..., object], *arguments: object) -> None:
-        """Call a function later in the thread of the node."""
-        self._executor.create_task(call, *arguments)
+        """Call a function later in the thread of the node, after the calls that were requested before."""
+        self._calls.call(call, *arguments)
 
     # --- the graph and the rates --------------------------------------------------------------------------------
 
@@ -138,7 +140,7 @@ class Ears:
     def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         """Handle a key of turtle_teleop_key. `turtle` is the full name of the turtle, such as "/turtle1"."""
         self._leave_s = math.inf
-        self._executor.create_task(self._drive, turtle, key)
+        self._calls.call(self._drive, turtle, key)
 
     def leave(self) -> None:
         """Remove the driving node from the graph about a second later, so that its last command can arrive."""

@@ -20,6 +20,7 @@ from rclpy.signals import SignalHandlerOptions
 from turtlesim.action import RotateAbsolute
 
 from grader.common.interrupts import stops_deferred
+from grader.ros.in_order import InOrder
 from grader.turtlesim.programs.raw_terminal import is_terminal, keyboard
 from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Quit, Turn, keys
 
@@ -119,7 +120,7 @@ def main() -> int:
             stack.callback(executor.shutdown)
         with keyboard() as read:
             print(_HELP, flush=True)
-            _follow(read, node, executor)
+            _follow(read, node, InOrder(executor))
     return 0
 
 
@@ -128,7 +129,7 @@ def _spin(executor: SingleThreadedExecutor) -> None:
         executor.spin()
 
 
-def _follow(read: Callable[[], bytes | None], node: Teleop, executor: SingleThreadedExecutor) -> None:
+def _follow(read: Callable[[], bytes | None], node: Teleop, calls: InOrder) -> None:
     """Handle the keys until Q is pressed or the terminal is closed."""
     rest = ""
     while data := read():
@@ -139,9 +140,9 @@ def _follow(read: Callable[[], bytes | None], node: Teleop, executor: SingleThre
             if isinstance(key, Drive):
                 node.drive(key)
             elif isinstance(key, Turn):
-                executor.create_task(node.turn, key)
+                calls.call(node.turn, key)
             elif isinstance(key, Cancel):
-                executor.create_task(node.cancel)
+                calls.call(node.cancel)
 
 
 if __name__ == "__main__":
