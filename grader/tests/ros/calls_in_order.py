@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 from grader.ros.in_order import InOrder
 from grader.turtlesim.programs import turtle_teleop_key
-from grader.turtlesim.programs.teleop_keys import Drive
+from grader.turtlesim.programs.teleop_keys import Drive, Turn
 from grader.view.system import Ears
 
 if TYPE_CHECKING:
@@ -53,18 +53,18 @@ def driven() -> list[float]:
     return _spun(ears._executor, made, 3)
 
 
-def typed() -> list[str]:
-    """Return what turtle_teleop_key passes to its node for the keys G, R and F in one read."""
+def typed() -> list[float | None]:
+    """Return the headings (rad) of the turns that turtle_teleop_key begins for G, R and F in one read; None cancels."""
     rclpy.init()
     executor = SingleThreadedExecutor()
-    made: list[str] = []
+    made: list[float | None] = []
 
     class Told:
-        async def turn(self, key: Any) -> None:  # noqa: ANN401
-            made.append(type(key).__name__)
+        async def turn(self, key: Turn) -> None:
+            made.append(round(key.theta, 2))
 
         async def cancel(self) -> None:
-            made.append("Cancel")
+            made.append(None)
 
     data = iter([b"grf"])
     follow: Callable[..., None] = turtle_teleop_key._follow

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @pytest.mark.parametrize(
     ("name", "order"),
-    [("begun", [0, 1, 2, 3, 4, 5]), ("driven", [1.0, 2.0, 0.0]), ("typed", ["Turn", "Turn", "Cancel"])],
+    [("begun", [0, 1, 2, 3, 4, 5]), ("driven", [1.0, 2.0, 0.0]), ("typed", [0.0, 1.57, None])],
 )
 def test_calls_begin_in_the_order_of_the_requests(in_ros: InRos, name: str, order: list[object]) -> None:
     assert in_ros.run(f"ros.calls_in_order:{name}").result == order
