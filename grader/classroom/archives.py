@@ -9,11 +9,9 @@ from __future__ import annotations
 
 import errno
 import hashlib
-import os
 import tempfile
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from grader.classroom.unpack import (
@@ -26,12 +24,14 @@ from grader.classroom.unpack import (
     read_archive,
     too_large,
 )
+from grader.common.temporary_folder import temporary_folder
 from grader.errors import DiskError, TooLargeError
 from grader.submission import reader, tree
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from pathlib import Path
 
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
@@ -118,12 +118,12 @@ def _hashed(archive: Path, target: IO[bytes] | None = None) -> tuple[str, Except
 
 @contextmanager
 def _temporary_folder() -> Iterator[Path]:
-    try:
-        made = tempfile.TemporaryDirectory(prefix="grader-unpacked-")
-    except OSError as error:
-        raise _disk_error(error) from error
-    with made as named:
-        yield Path(os.path.realpath(named))
+    with ExitStack() as stack:
+        try:
+            folder = stack.enter_context(temporary_folder())
+        except OSError as error:
+            raise _disk_error(error) from error
+        yield folder
 
 
 @contextmanager

@@ -8,9 +8,7 @@ of the trial.
 from __future__ import annotations
 
 import io
-import shutil
 import tarfile
-import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
@@ -18,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from grader.colcon.build import Build
 from grader.common.interpreter import interpreter
+from grader.common.temporary_folder import temporary_folder
 from grader.errors import MachineError, TooLargeError
 from grader.ros import installation
 from grader.sandbox import bubblewrap, process
@@ -126,12 +125,9 @@ def _workspace(*, in_cell: bool) -> Iterator[tuple[Path, Path]]:
     if in_cell:
         yield bubblewrap.WORKSPACE, bubblewrap.HOME
         return
-    folder = Path(tempfile.mkdtemp(prefix="grader-"))
-    try:
+    with temporary_folder() as folder:
         (folder / "home").mkdir()
         yield folder, folder / "home"
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _pack(submission: Submission) -> bytes:

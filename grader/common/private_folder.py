@@ -8,13 +8,20 @@ from __future__ import annotations
 
 import os
 import stat
+import tempfile
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from grader.errors import MachineError
 
-if TYPE_CHECKING:
-    from pathlib import Path
+
+def users_folder() -> Path:
+    """Return the folder of this user in the folder for temporary files.
+
+    Raises:
+        MachineError: the folder cannot be created, or other users have access to it.
+    """
+    return private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}")
 
 
 def private_folder(above: Path, name: str) -> Path:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import shutil
 import sys
-import tempfile
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
@@ -18,6 +17,7 @@ from nbgrader.converters import Autograde, GenerateFeedback
 from nbgrader.converters.base import BaseConverter, NbGraderException
 from nbgrader.exchange.default import ExchangeCollect
 
+from grader.common.temporary_folder import temporary_folder
 from grader.errors import GraderError
 from grader.gradebook import inbound, readable
 from grader.gradebook.class_folders import CLASS, GRADEBOOK, RESULTS
@@ -259,8 +259,8 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         If the disk has failed, stop, because nbgrader removes a student's earlier submission before each copy. Other
         students would lose their earlier submissions.
         """
-        with tempfile.TemporaryDirectory(prefix="collect-") as folder:
-            safe = Path(folder, "submission")
+        with temporary_folder() as folder:
+            safe = folder / "submission"
             try:
                 left_out = copy_of(Path(src), safe)
                 read(readable.time_of, safe)

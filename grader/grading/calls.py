@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import struct
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader.common.temporary_folder import temporary_folder
 from grader.grading.plan import DEFAULT_SEED
 from grader.submission.reader import read
 from grader.trial.called import read_called
@@ -72,8 +71,8 @@ def _bag_files(bag: BagInput, ros: Ros, seed: int) -> dict[str, bytes]:
     """Return the files of the bag by their paths."""
     from grader.evidence.bag import write_bag  # rosbags takes 0.1 s to import, and most exercises do not need it
 
-    with tempfile.TemporaryDirectory(prefix="grader-") as made:
-        folder = Path(made) / bag.id
+    with temporary_folder() as made:
+        folder = made / bag.id
         write_bag(folder, _messages(bag, seed), ros.all_prefixes)
         return {f"bags/{bag.id}/{file.name}": file.read_bytes() for file in sorted(folder.iterdir())}
 

@@ -9,7 +9,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING
 from grader.checks.exercises import load_exercise
 from grader.common.how_ended import program_ended
 from grader.common.interpreter import interpreter
+from grader.common.temporary_folder import temporary_folder
 from grader.common.terminal_text import say
 from grader.common.words import nearest
 from grader.errors import MachineError, UsageError
@@ -120,9 +120,9 @@ def run(program: Program, *, view: bool) -> int:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     env = shell.users_environment(None, _tell)
-    with tempfile.TemporaryDirectory(prefix="grader-run-") as place:
+    with temporary_folder() as place:
         _tell(f"Building {program.package}")
-        overlay = _built(program, Path(place), env)
+        overlay = _built(program, place, env)
         if overlay is None:
             return 1
         script = overlay / "lib" / program.package / program.executable
@@ -220,8 +220,8 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
         MachineError: turtlesim did not start within READY_S. Its output has been printed.
     """
     options = ["--view"] if view else []
-    with tempfile.TemporaryDirectory(prefix="grader-run-") as place:
-        log = Path(place, "log")
+    with temporary_folder() as place:
+        log = place / "log"
         with log.open("wb") as writing:
             start = interpreter("-m", "grader.view.turtlesim_node", *options, env=env, searches=True)
             simulator = subprocess.Popen(

@@ -10,14 +10,13 @@ import json
 import os
 import re
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Literal
 
 from grader.common import xdg
-from grader.common.private_folder import private_folder
+from grader.common.private_folder import users_folder
 from grader.errors import MachineError, UsageError
 from grader.ros.domain import wrong_domain
 
@@ -190,9 +189,7 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
         # to. The script needs only the standard library.
         needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
-        needed["ROS_LOG_DIR"] = str(
-            private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}") / "ros-log"
-        )
+        needed["ROS_LOG_DIR"] = str(users_folder() / "ros-log")
     joined = {name: _joined(name, needed, env) for name in SEARCHED if name in needed or name in env}
     joined["PATH"] = _users_path(ros, env)
     theirs = _THEIRS if ros.kind == "sourced" else _THEIRS - {"RMW_IMPLEMENTATION"}  # the wheels have only one

@@ -6,11 +6,10 @@ import os
 import secrets
 import shlex
 import subprocess
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
+from grader.common.temporary_folder import temporary_folder
 from grader.ros.installation import FASTDDS_PROFILE, Ros, environment
 from grader.sandbox import bubblewrap
 from grader.sandbox.user import cell_user
@@ -50,11 +49,11 @@ def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
 
     If `confined` is True, the publisher is in a cell, and the other node is outside.
     """
-    with tempfile.TemporaryDirectory(prefix="grader-") as home, cell_user() as user:
+    with temporary_folder() as home, cell_user() as user:
         if confined:
             command, env = _talk_from_a_cell(ros, user), dict(os.environ)
         else:
-            env = environment(ros, home=Path(home), domain=DOMAIN)
+            env = environment(ros, home=home, domain=DOMAIN)
             talker, listener = _talker_and_listener(ros, env)
             command = ["sh", "-c", f"setpriv --pdeathsig=KILL {shlex.join(talker)} & exec {shlex.join(listener)}"]
         try:

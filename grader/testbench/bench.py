@@ -14,7 +14,6 @@ import io
 import random
 import re
 import tarfile
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -22,6 +21,7 @@ from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
 
+from grader.common.temporary_folder import temporary_folder
 from grader.submission.code import read_module
 from grader.submission.reader import read
 from grader.testbench.lane import Lane, Package
@@ -118,8 +118,8 @@ class Bench:
     def _lane(self, stack: ExitStack) -> Lane:
         if self._in_cell:
             return Lane(self._ros, self._tests, self._spec.duration_s)
-        folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True))
-        return Lane(self._ros, self._tests, self._spec.duration_s, Path(folder))
+        folder = stack.enter_context(temporary_folder())
+        return Lane(self._ros, self._tests, self._spec.duration_s, folder)
 
 
 @dataclass(frozen=True)

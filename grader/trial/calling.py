@@ -5,12 +5,12 @@ from __future__ import annotations
 import base64
 import json
 import os
-import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.common.interpreter import interpreter
+from grader.common.temporary_folder import temporary_folder
 from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap, process
@@ -55,8 +55,7 @@ def make_calls(
         if in_cell:
             workspace, home = bubblewrap.WORKSPACE, bubblewrap.HOME
         else:
-            made = tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True)
-            workspace = Path(stack.enter_context(made))
+            workspace = stack.enter_context(temporary_folder())
             home = workspace / "home"
             home.mkdir()
         prefix = workspace / "install" / package

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import fcntl
-import os
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.common.private_folder import private_folder
+from grader.common.private_folder import users_folder
 from grader.errors import MachineError
 from grader.graph.announcements import participant_ports
 from grader.ros.domain import HIGHEST
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
+    from pathlib import Path
 
 _DOMAINS: tuple[int, ...] = (*range(1, 102), *range(215, HIGHEST + 1))
 """The domains whose ports are outside of the range from which Linux assigns ports to any program, 32768 to 60999. Of
@@ -52,4 +50,4 @@ def lock_file(domain: int) -> Path:
     Raises:
         MachineError: the folder of the lock files cannot be used.
     """
-    return private_folder(Path(tempfile.gettempdir()), f"ros2-grader-{os.getuid()}") / f"domain-{domain}.lock"
+    return users_folder() / f"domain-{domain}.lock"

@@ -9,11 +9,11 @@ import subprocess
 import tempfile
 from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, field, replace
-from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from grader.common.how_ended import how_ended
 from grader.common.system_errors import refusal_in
+from grader.common.temporary_folder import temporary_folder
 from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap
@@ -194,10 +194,8 @@ class Trial:
         if self._in_cell:
             self._workspace, self._home, self._domain = bubblewrap.WORKSPACE, bubblewrap.HOME, None
         else:
-            folder = self._stack.enter_context(
-                tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True)
-            )
-            self._workspace, self._home = Path(folder), Path(folder) / "home"
+            self._workspace = self._stack.enter_context(temporary_folder())
+            self._home = self._workspace / "home"
             self._home.mkdir()
             self._domain = own_domain(self._stack)
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115

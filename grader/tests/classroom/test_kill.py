@@ -105,7 +105,11 @@ def assert_nothing_lost(run: Run, out: Path) -> None:
     assert files == sorted(file.name for file in (run.out / "reports").iterdir())
 
 
-def test_no_result_is_lost_when_the_run_is_killed_three_times(undisturbed: Run, tmp_path: Path) -> None:
+def test_no_result_is_lost_when_the_run_is_killed_three_times(
+    undisturbed: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (temporary := tmp_path / "temporary").mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
     blows: list[Blow] = ["grader", "disk", "worker"]
     for seed in range(8, 14):
         out = tmp_path / f"grades-{seed}"
@@ -113,6 +117,7 @@ def test_no_result_is_lost_when_the_run_is_killed_three_times(undisturbed: Run, 
         killer.until_struck(blows, within_s=2.0)
         killer.finish()
         assert_nothing_lost(undisturbed, out)
+        assert [path.name for path in temporary.rglob("grader-*")] == []
         # If this process had to wait for a processor, a run may have finished before it was interrupted.
         if killer.struck == blows:
             return
