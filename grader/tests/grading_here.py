@@ -21,7 +21,7 @@ from grader.report.json import to_data
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers, open_submission
 from grader.tests.case import make_submission
-from grader.tests.gradings import AT_ONCE, EXERCISE, Graded
+from grader.tests.gradings import AT_ONCE, EXERCISE, Graded, until_judged
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -83,12 +83,16 @@ def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> 
         submission = open_submission(given) if exercise.package else open_answers(given)
     except UsageError as error:
         return Graded(2, "", str(error), None)
-    reported: list[str] = []
-    report = grade(exercise, submission, Options(bubblewrap.usable(), clock), reported.append, build=builds).report
-    page = Console(file=io.StringIO(), width=120)
-    terminal.render(report, page)
-    assert isinstance(page.file, io.StringIO)
-    return Graded(report.exit_code, page.file.getvalue(), "\n".join(reported), to_data(report))
+
+    def attempt() -> Graded:
+        reported: list[str] = []
+        report = grade(exercise, submission, Options(bubblewrap.usable(), clock), reported.append, build=builds).report
+        page = Console(file=io.StringIO(), width=120)
+        terminal.render(report, page)
+        assert isinstance(page.file, io.StringIO)
+        return Graded(report.exit_code, page.file.getvalue(), "\n".join(reported), to_data(report))
+
+    return until_judged(attempt)
 
 
 def all_graded_here(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:

@@ -26,6 +26,7 @@ from grader.tests.attack import Attack, make_attack, read_attacks
 from grader.tests.case import copy_solution
 from grader.tests.gradings import AT_ONCE
 from grader.tests.observed_host import SECRET, Host, Left, readable_by_others
+from grader.tests.waiting import is_crowded
 from grader.trial.recorder import NAMESAKE, OWN_NAMESPACE
 
 if TYPE_CHECKING:
@@ -47,8 +48,8 @@ class Graded:
 
     left: Left
     work: Path
-    load: float
-    """The load average (1 minute) at the end of the attack."""
+    crowded: bool
+    """Whether the report says that the machine was too busy, and other programs kept it busy."""
 
     @property
     def evidence(self) -> Evidence:
@@ -57,11 +58,6 @@ class Graded:
     @property
     def points(self) -> float:
         return float(json.loads((self.work / "report.json").read_bytes())["points"])
-
-    @property
-    def crowded(self) -> bool:
-        """Return whether the report says that the machine was too busy, and other programs kept it busy."""
-        return "The machine was too busy" in self.left.stdout and self.load > 2.0 * (os.cpu_count() or 1)
 
     @property
     def said(self) -> str:
@@ -94,10 +90,11 @@ def run(attack: Attack, mode: str, folder: Path) -> Graded:
     if mode == "undefended" and attack.raw:
         raw = attack.raw.replace("{python}", shlex.quote(sys.executable))
         script = f"cd my_robot_controller && {{ {raw}; }} 2>&1"
-        return Graded(host.run(["sh", "-c", script], defended=False), host.work, os.getloadavg()[0])
+        return Graded(host.run(["sh", "-c", script], defended=False), host.work, crowded=False)
     wanted = ["--json", "report.json", "--html", "report.html", "--recording", "recording", "--clock", attack.clock]
     check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", attack.base, *wanted]
-    return Graded(host.run(check, defended=mode != "undefended"), host.work, os.getloadavg()[0])
+    left = host.run(check, defended=mode != "undefended")
+    return Graded(left, host.work, is_crowded(left.stdout))
 
 
 @pytest.fixture(scope="session")

@@ -27,6 +27,11 @@ def until(there: Callable[[], bool]) -> None:
         time.sleep(_POLL_S)
 
 
+def is_crowded(said: str) -> bool:
+    """Return whether a report says that the machine was too busy to judge, and this machine is indeed busy."""
+    return "The machine was too busy" in said and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)
+
+
 def only_child(pid: int) -> int:
     """Wait until a process has exactly one child process, and return the id of the child process.
 
