@@ -50,8 +50,16 @@ def raise_lost_stops() -> None:
 def _raise_again(discarded: sys.UnraisableHookArgs) -> None:
     if isinstance(discarded.exc_value, KeyboardInterrupt):
         _raise_soon(discarded.exc_value)
-    else:
+    elif not _is_half_created(discarded):
         sys.__unraisablehook__(discarded)
+
+
+def _is_half_created(discarded: sys.UnraisableHookArgs) -> bool:
+    """Return whether `__del__` of an object did not find an attribute, because Ctrl-C had interrupted its `__init__`.
+
+    For example, rclpy's executor creates a Task for each callback, so Ctrl-C may arrive at this moment.
+    """
+    return isinstance(discarded.exc_value, AttributeError) and getattr(discarded.object, "__name__", "") == "__del__"
 
 
 def _raise_soon(lost: KeyboardInterrupt) -> None:

@@ -43,6 +43,24 @@ try:
 except KeyboardInterrupt:
     print("interrupted", rclpy.ok())
 """
+TASK_INTERRUPTED = """
+import signal, sys
+from rclpy.task import Future
+from grader.common.interrupts import raise_lost_stops
+
+
+def interrupt(frame, *_):
+    if frame.f_code is Future.__init__.__code__:
+        signal.raise_signal(signal.SIGINT)
+
+
+raise_lost_stops()
+sys.settrace(interrupt)
+try:
+    Future()
+except KeyboardInterrupt:
+    print("interrupted")
+"""
 
 
 def outcome_of(code: str) -> tuple[int, str, str]:
@@ -97,3 +115,14 @@ def test_an_interrupt_is_not_raised_where_python_would_discard_it_a_third_time()
 
 def test_ctrl_c_while_a_commands_node_is_created_prints_nothing_and_the_node_is_removed() -> None:
     assert outcome_of(NODE_INTERRUPTED) == (0, "interrupted False\n", "")
+
+
+def test_ctrl_c_while_rclpy_creates_a_task_prints_nothing() -> None:
+    assert outcome_of(TASK_INTERRUPTED) == (0, "interrupted\n", "")
+
+
+def test_another_error_in_a_finalizer_is_printed() -> None:
+    code = "from grader.common.interrupts import raise_lost_stops\nraise_lost_stops()\n"
+    code += "class Broken:\n    def __del__(self):\n        raise ValueError('broken')\nBroken()"
+    returncode, stdout, stderr = outcome_of(code)
+    assert (returncode, stdout, "ValueError: broken" in stderr) == (0, "", True)
