@@ -87,6 +87,10 @@ def test_rqt_plot_shows_values_and_says_what_cannot_be_plotted(driven: World, br
         remove.hover()
         tab.mouse.down()
         drawn_again(tab)
+        # Meanwhile, another row appears.
+        tab.evaluate("document.querySelector('#field').value = '/nowhere/y'")
+        tab.get_by_role("button", name="Add").evaluate("(button) => button.click()")
+        tab.get_by_role("row", name="/nowhere/y").wait_for()
         assert remove.evaluate("(button) => button === document.activeElement")
         tab.mouse.up()
         tab.get_by_role("row", name="/turtle1/pose/x").wait_for(state="detached")

@@ -121,7 +121,10 @@ export class Plot {
     const kept = new Map(before.map((row) => [row.dataset.name, row]));
     const after = rows.map((row) => this.row(row, kept.get(row.name)));
     // A button that is taken out of the page and put back loses the focus, and the click if it is being pressed.
-    if (after.length !== before.length || after.some((row, index) => row !== before[index])) this.body.replaceChildren(...after);
+    for (const row of before) if (!after.includes(row)) row.remove();
+    after.forEach((row, index) => {
+      if (row !== this.body.rows[index]) this.body.insertBefore(row, this.body.rows[index] ?? null);
+    });
   }
 
   row({ name, cells, problem, number }, kept) {
