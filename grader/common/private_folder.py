@@ -12,7 +12,8 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from grader.errors import MachineError
+from grader.common.system_errors import OF_THE_DISK
+from grader.errors import DiskError, MachineError
 
 
 def users_folder() -> Path:
@@ -28,6 +29,7 @@ def private_folder(above: Path, name: str) -> Path:
     """Return the folder `name` in `above`. The folder is created if it does not exist.
 
     Raises:
+        DiskError: the disk failed.
         MachineError: the folder cannot be created, or other users have access to it.
     """
     folder = above / name
@@ -37,7 +39,7 @@ def private_folder(above: Path, name: str) -> Path:
         about = folder.lstat()
     except OSError as error:
         message = f"{folder} could not be created: {error.strerror}."
-        raise MachineError(message) from error
+        raise (DiskError if error.errno in OF_THE_DISK else MachineError)(message) from error
     if not stat.S_ISDIR(about.st_mode) or about.st_uid != os.geteuid() or about.st_mode & 0o077:
         message = f"{folder} must be a folder that only you can open. Remove it."
         raise MachineError(message)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from contextlib import ExitStack
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from grader.common.private_folder import private_folder
-from grader.errors import MachineError
+from grader.errors import DiskError, MachineError
 from grader.trial.own_domain import own_domain
 
 NAME = f"ros2-grader-{os.getuid()}"
@@ -38,6 +39,15 @@ def test_a_folder_that_another_user_has_prepared_is_refused(tmp_path: Path, prep
     assert callable(prepare)
     prepare(tmp_path / NAME)
     with pytest.raises(MachineError, match="only you can open"):
+        private_folder(tmp_path, NAME)
+
+
+def test_a_full_disk_is_reported_as_such(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "mkdir", full)
+    with pytest.raises(DiskError, match="No space left on device"):
         private_folder(tmp_path, NAME)
 
 
