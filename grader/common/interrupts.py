@@ -55,7 +55,7 @@ def _raise_again(discarded: sys.UnraisableHookArgs) -> None:
 
 
 def _is_half_created(discarded: sys.UnraisableHookArgs) -> bool:
-    """Return whether `__del__` of an object did not find an attribute, because Ctrl-C had interrupted its `__init__`.
+    """Return whether `__del__` did not find an attribute. Usually, Ctrl-C has interrupted the `__init__` of its object.
 
     For example, rclpy's executor creates a Task for each callback, so Ctrl-C may arrive at this moment.
     """
