@@ -31,12 +31,8 @@ ENDS_S = 10
 terminates the command."""
 
 
-class _EndedError(KeyboardInterrupt):
-    """SIGTERM or SIGHUP interrupted the command. `number` is the number of the signal."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__()
-        self.number = number
+_stops: list[int] = []
+"""The numbers of the signals that have interrupted the command."""
 
 
 def main() -> NoReturn:
@@ -55,8 +51,9 @@ def main() -> NoReturn:
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run `ros2`, flush standard output, and return the exit code."""
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) == signal.SIG_DFL:
+    _stops.clear()
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) in {signal.SIG_DFL, signal.default_int_handler}:
             signal.signal(number, _end)
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
@@ -72,15 +69,16 @@ def run(arguments: Sequence[str] | None = None) -> int:
             _report(str(error))
             _report_slip(words)
         return error.exit_code
-    except KeyboardInterrupt as error:
-        _forget_the_terminal()
-        # Exit with the code of the real ros2: 2 after Ctrl-C, 15 after SIGTERM.
-        return error.number if isinstance(error, _EndedError) else signal.SIGINT
+    except KeyboardInterrupt:
+        return _interrupted()
     except BrokenPipeError:
         # The reader of the output has exited, as in `ros2 topic echo | head`.
         _forget_the_terminal()
         return 0
     except Exception as error:
+        if _stops:
+            # rclpy calls the constructor of a message from C++, and replaces a KeyboardInterrupt by a RuntimeError.
+            return _interrupted()
         if os.environ.get("GRADER_DEBUG"):
             raise
         _forget_the_terminal()
@@ -89,6 +87,12 @@ def run(arguments: Sequence[str] | None = None) -> int:
         _report(refusal(error) or f"{fault}\n{more}")
         return 3
     return code
+
+
+def _interrupted() -> int:
+    """Return the exit code of the real ros2: 2 after Ctrl-C, 15 after SIGTERM."""
+    _forget_the_terminal()
+    return _stops[-1] if _stops else signal.SIGINT
 
 
 def _report(text: str) -> None:
@@ -136,16 +140,18 @@ def _complete() -> NoReturn:
 
 
 def _end(number: int, _: FrameType | None) -> None:
-    """Raise an exception as Ctrl-C does, so that the node leaves the graph. A second signal terminates the process.
+    """Raise a KeyboardInterrupt, so that the node leaves the graph. A second SIGTERM or SIGHUP terminates the process.
 
     The exception does not always end the process: Python discards it during `__del__`, and the middleware can block
     while the node is removed. If the terminal is closed, nobody sends a second signal. Therefore, an alarm terminates
     the process.
     """
-    signal.signal(number, signal.SIG_DFL)
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.alarm(ENDS_S)
-    raise _EndedError(number)
+    _stops.append(number)
+    if number != signal.SIGINT:
+        signal.signal(number, signal.SIG_DFL)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.alarm(ENDS_S)
+    raise KeyboardInterrupt
 
 
 def _forget_the_terminal() -> None:
