@@ -145,10 +145,6 @@ def check(
             build=build_for(marks=confined),
             trial=partial(Trial, share=not confined),
         )
-        if recording:
-            recording_format.save(
-                recording, graded.evidence, graded.report.ros, graded.prefixes, confined=graded.report.confined
-            )
     from grader.learner import steps
 
     following, unsaved = "", None
@@ -161,6 +157,10 @@ def check(
     try:
         _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following, changes=explain)
     finally:
+        if recording:
+            recording_format.save(
+                recording, graded.evidence, graded.report.ros, graded.prefixes, confined=graded.report.confined
+            )
         if unsaved is not None:
             raise unsaved
 

@@ -38,8 +38,9 @@ def make_usable() -> None:
 
     With `grader env >&-`, sys.stdout is None, and the next file that is opened would become the standard output of all
     child processes. If the encoding is not UTF-8, for example with PYTHONIOENCODING=ascii, a question mark is printed
-    in place of each character that the encoding does not have. If standard error is a file on a full disk, the messages
-    are lost, and the command continues.
+    in place of each character that the encoding does not have. A file name that is not valid UTF-8 is printed as it is,
+    in all locales as in C.UTF-8. If standard error is a file on a full disk, the messages are lost, and the command
+    continues.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -56,6 +57,8 @@ def make_usable() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper) and not has_signs(stream.encoding):
             stream.reconfigure(errors="replace")
+        elif isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            stream.reconfigure(errors="surrogateescape")
 
 
 def has_signs(encoding: str) -> bool:

@@ -131,10 +131,14 @@ def check_free(folder: Path) -> None:
     """Check, before a trial is run, that a recording can be written to this folder.
 
     Raises:
-        UsageError: the path is a file, or a folder that is not empty.
+        UsageError: the path is a file, a folder that is not empty, or a path that the user may not write.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         message = f"{folder} is not an empty folder. Choose a new folder for the recording."
+        raise UsageError(message)
+    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        message = f"The recording cannot be written to {folder}: {there} is not a folder that you can write to."
         raise UsageError(message)
 
 

@@ -82,11 +82,12 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
         return _step(lesson.name, root)
     current = steps.current(folder)
     of_workspace = path is None or path.resolve() in (root, root / "src")
-    if of_workspace and current is not None and exercise in (None, current[0].id):
+    known = find_exercise(exercise) if exercise else None
+    if of_workspace and current is not None and (known is None or known.id == current[0].id):
         _check_there(*current)
         return current
     place = path or Path()
-    known = find_exercise(exercise) if exercise else exercise_of_folder(place)
+    known = known or exercise_of_folder(place)
     if known is None and current is not None and current[1].resolve() == place.resolve():
         known = current[0]
     return known, place

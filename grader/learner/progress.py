@@ -18,7 +18,7 @@ from grader.checks.outcome import Status
 from grader.common import xdg
 from grader.common.roots_files import belongs_to_root
 from grader.common.system_errors import of_the_machine, refusal
-from grader.errors import MachineError
+from grader.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -80,9 +80,18 @@ class Progress:
 
 
 def workspace_of(folder: Path | None) -> Path:
-    """Return the absolute path of the workspace: `folder`, ROS2_WORKSPACE, or ~/ros2_ws."""
+    """Return the absolute path of the workspace: `folder`, ROS2_WORKSPACE, or ~/ros2_ws.
+
+    Raises:
+        UsageError: the path begins with ~NAME, but there is no user NAME.
+    """
     named = folder or Path(os.environ.get("ROS2_WORKSPACE") or DEFAULT_WORKSPACE)
-    return named.expanduser().resolve()
+    try:
+        return named.expanduser().resolve()
+    except RuntimeError as error:
+        user = named.parts[0][1:]
+        message = f"{named} is in the home folder of the user {user}, who does not exist. Did you mean ~/{user}?"
+        raise UsageError(message) from error
 
 
 def state_file() -> Path:
@@ -151,10 +160,10 @@ def _read(file: Path) -> dict[str, Any]:
         return {"schema": _SCHEMA, "workspaces": {}}
     except (OSError, ValueError) as error:
         detail = error.strerror if isinstance(error, OSError) else str(error)
-        message = (
-            f"Your progress in {file} cannot be read ({detail}). Move the file away to start again. Your work is not "
-            "lost."
-        )
+        more = "Move the file away to start again. Your work is not lost."
+        if isinstance(error, PermissionError):
+            more = belongs_to_root(file) or "Choose a folder of your own: export XDG_STATE_HOME=FOLDER"
+        message = f"Your progress in {file} cannot be read ({detail}). {more}"
         raise MachineError(message) from error
     if not isinstance(data, dict) or data.get("schema") != _SCHEMA:
         message = (

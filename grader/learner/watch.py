@@ -199,6 +199,8 @@ class Watched:
             return self._open().digest != self._judged
         except UsageError as error:
             return str(error) != self._judged
+        except MachineError:
+            return True  # the next grading reports the reason
 
     def grade(
         self,
@@ -263,11 +265,15 @@ class Watched:
 
         Before each test, `give_up` is called to find out whether other work must be done first. If so, the tests stop,
         and the next call to `prove` starts from the beginning. Return the report with the results of the tests, or None
-        if the tests were stopped or no fix was tested.
+        if the tests were stopped, if no fix was tested, or if the machine could not test it.
         """
         if self._unproved is None or give_up():
             return None
-        proved = explained(self._unproved, self._options, tell, build=self.rebuild, give_up=give_up)
+        try:
+            proved = explained(self._unproved, self._options, tell, build=self.rebuild, give_up=give_up)
+        except MachineError:
+            self._unproved = None
+            return None
         if give_up():
             return None
         self._unproved = None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import itertools
+import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -89,10 +91,12 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     if exercise.package:
         source = source / exercise.package
     folder = work_folder(exercise, workspace)
+    kept = None
     try:
         if exercise.apart:
             _ignored(workspace / APART)
-        kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
+        if fresh and folder.exists():
+            kept = _put_aside(folder, workspace)
         own = exercise.numbers
         numbers = {own.file: to_toml(draw_numbers(own, student)).encode()} if own is not None else {}
         added, present = add_missing(source, folder, numbers)
@@ -104,7 +108,9 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         raise UsageError(_in_the_way(Path(error.filename))) from error
     except OSError as error:
         more = belongs_to_root(Path(error.filename or folder))
-        message = f"{error.filename or folder} could not be read or written: {error.strerror}. {more}".rstrip()
+        moved = f"Your earlier work is in {kept}." if kept else ""
+        said = f"{error.filename or folder} could not be read or written: {error.strerror}."
+        message = " ".join(filter(None, [said, more, moved]))
         raise MachineError(message) from error
     return Started(folder, added, present, kept, lacking, tasks, earlier)
 
@@ -113,7 +119,7 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
     """Copy the files of `source` that are missing from `folder`, except for notebooks.
 
     `instead` replaces the content of some files. Return the paths that were added, and the paths that were not changed.
-    Raises OSError.
+    Each file appears with its whole content, even if the process is killed or the disk is full. Raises OSError.
     """
     found = tree.read_folder(source)
     added, present = [], []
@@ -122,17 +128,24 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
             continue
         target = folder / path
         target.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with target.open("xb") as file:
-                file.write(instead.get(path, found.files[path]))
-        except FileExistsError:
-            if target.is_dir():
-                raise
+        if target.is_dir():
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target))
+        if os.path.lexists(target):
             present.append(path)
             continue
-        target.chmod(0o755 if path in found.executable else 0o644)
+        _create(target, instead.get(path, found.files[path]), 0o755 if path in found.executable else 0o644)
         added.append(path)
     return tuple(added), tuple(present)
+
+
+def _create(target: Path, content: bytes, mode: int) -> None:
+    partial = target.with_name(f".{target.name}.new")
+    try:
+        partial.write_bytes(content)
+        partial.chmod(mode)
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def _is_of_earlier_step(exercise: Exercise, source: Path, path: str) -> bool:

@@ -28,7 +28,7 @@ SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHON
 """The environment variables that hold the search paths of ROS 2 and its overlays."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
 _UNWATCHED = (
-    *("ROS_LOG_DIR", "RCUTILS_COLORIZED_OUTPUT", "OPENBLAS_NUM_THREADS"),
+    *("ROS_LOG_DIR", "RCUTILS_COLORIZED_OUTPUT", "OPENBLAS_NUM_THREADS", "MALLOC_ARENA_MAX"),
     *("PYTHONHASHSEED", "PYTHONNOUSERSITE", "PYTHONUNBUFFERED"),
 )
 """Variables that are set only for processes that the grader starts. A node that a user starts uses the user's
@@ -130,6 +130,9 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
         "PYTHONUNBUFFERED": "1",
         # numpy, which geometry_msgs imports, would start one thread per processor. These threads busy-wait for 0.1 s.
         "OPENBLAS_NUM_THREADS": "1",
+        # glibc reserves 64 MiB of address space, which is limited, for each new thread, until there are 8 such arenas
+        # per processor. With the number for two processors, the same threads fit on every machine.
+        "MALLOC_ARENA_MAX": "16",
         "ROS_DISTRO": DISTRO,
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",

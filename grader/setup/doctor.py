@@ -190,7 +190,7 @@ def look_at_colcon() -> Line:
 
 def look_at_disk(folder: Path) -> Line:
     """Return a line with the free space on the disk for the built interfaces."""
-    there = next(path for path in [folder, *folder.parents] if path.is_dir())
+    there = next(path for path in [folder, *folder.parents] if os.path.isdir(path))  # noqa: PTH112 - Path.is_dir raises PermissionError
     free = shutil.disk_usage(there).free
     observed = f"{free / GIB:.1f} GiB free for {folder}"
     if free >= LITTLE_DISK:

@@ -91,6 +91,13 @@ def test_characters_that_an_encoding_lacks_are_replaced(tmp_path: Path) -> None:
     assert "?bung" in done.stdout
 
 
+def test_a_name_that_is_not_utf_8_is_printed_as_it_is(tmp_path: Path) -> None:
+    """In a locale such as en_US.UTF-8, Python would raise an error."""
+    line = "grader status --workspace \"$(printf '/tmp/\\374bung')\" | od -c | grep -o '374 *b'"
+    done = run(line, tmp_path, PYTHONIOENCODING="utf-8:strict")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.parametrize(("encoding", "has"), [("utf-8", True), ("UTF-16", True), ("ascii", False), ("latin-1", False)])
 def test_only_unicode_has_signs(encoding: str, has: bool) -> None:
     assert has_signs(encoding) is has

@@ -63,6 +63,13 @@ def test_a_recording_says_whether_the_code_ran_in_a_sandbox(tmp_path: Path) -> N
         recording_format.load(tmp_path / "True", lambda _: CHALLENGES)
 
 
+def test_a_place_that_cannot_be_written_is_an_error_before_the_trial(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(UsageError, match="/file is not a folder that you can write to"):
+        recording_format.check_free(tmp_path / "file/recording")
+    recording_format.check_free(tmp_path / "new/recording")
+
+
 def test_a_recording_of_an_older_grader_is_refused(tmp_path: Path) -> None:
     recording_format.save(tmp_path / "kept", some_trials(), "none", ())
     file = tmp_path / "kept" / "submission.json"

@@ -39,6 +39,17 @@ def test_no_path_the_workspace_or_its_package_mean_the_current_step(workspace: P
     assert meant(path, None)[0].id == "03-circle-publisher"
 
 
+@pytest.mark.parametrize("exercise", ["3", "03", "03-circle-publisher"])
+def test_without_a_path_each_name_of_the_current_step_means_the_workspace(workspace: Path, exercise: str) -> None:
+    assert meant(None, exercise)[1] == workspace / "src/my_robot_controller"
+
+
+def test_a_forgotten_slash_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS2_WORKSPACE", "~ros2_ws")
+    with pytest.raises(UsageError, match=r"the user ros2_ws, who does not exist\. Did you mean ~/ros2_ws\?"):
+        meant(None, None)
+
+
 def test_the_folder_of_a_lesson_means_its_step(workspace: Path) -> None:
     known, place = guessed(course_folder() / "03-circle-publisher", None)
     assert known is not None

@@ -17,9 +17,7 @@ from rich.console import Console
 from grader.checks.exercises import find_exercise
 from grader.colcon.rebuild import Rebuild
 from grader.errors import UsageError
-from grader.grading.grade import Graded
 from grader.grading.options import Options
-from grader.learner import progress
 from grader.learner.watch import Events, Watched
 from grader.learner.watch_screen import _Screen
 from grader.report.report import PASSES
@@ -28,7 +26,6 @@ from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
 from grader.tests.no_ros import NO_ROS
-from grader.tests.report.reports import EVIDENCE, report
 from grader.tests.waiting import HANG_S, until, until_gone
 from grader.trial.recording import Pose
 from grader.trial.trial import Plan
@@ -260,27 +257,3 @@ def test_the_first_of_several_trials_is_prepared_early(package: Path, monkeypatc
     assert begun == [first]
     watched.close()
     assert begun == []
-
-
-@pytest.mark.usefixtures("home")
-def test_watching_goes_on_if_the_progress_cannot_be_read(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    graded = Graded(report("passed"), EVIDENCE["passed"], ())
-    monkeypatch.setattr("grader.learner.watch.grade", lambda *_, **__: graded)
-    damaged = progress.state_file()
-    damaged.parent.mkdir(parents=True)
-    damaged.write_text("{")
-    console = Console(file=io.StringIO(), record=True, width=200)
-    screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=False), console)
-    assert screen.show(Keys("lhq"), "") is None
-    said = console.export_text()
-    assert said.count("progress.json cannot be read") == 3
-    assert said.index("Passed: ") < said.index("cannot be read") < said.index("Watching ")
-
-
-class Keys(Events):
-    """The key presses of a learner, one after the other."""
-
-    def __init__(self, keys: str) -> None:
-        super().__init__(None)
-        for key in keys:
-            self.press(key)

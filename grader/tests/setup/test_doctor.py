@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import errno
 import io
 import os
 import shutil
@@ -158,6 +159,14 @@ def test_another_sourced_distribution_is_reported(wheels: Ros) -> None:
 def test_disk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, free: int, state: str) -> None:
     monkeypatch.setattr(shutil, "disk_usage", lambda _path: SimpleNamespace(free=free))
     assert doctor.look_at_disk(tmp_path / "not/yet/there").state == state
+
+
+def test_a_cache_that_may_not_be_entered(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def denied(path: Path) -> bool:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+
+    monkeypatch.setattr(Path, "is_dir", denied)
+    assert str(tmp_path / "cache") in doctor.look_at_disk(tmp_path / "cache").observed
 
 
 @pytest.mark.parametrize(
