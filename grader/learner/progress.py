@@ -89,8 +89,8 @@ def workspace_of(folder: Path | None) -> Path:
     try:
         return named.expanduser().resolve()
     except RuntimeError as error:
-        user = named.parts[0][1:]
-        message = f"{named} is in the home folder of the user {user}, who does not exist. Did you mean ~/{user}?"
+        user, typed = named.parts[0][1:], str(named)
+        message = f"{typed} is in the home folder of the user {user}, who does not exist. Did you mean ~/{typed[1:]}?"
         raise UsageError(message) from error
 
 

@@ -45,8 +45,8 @@ def test_without_a_path_each_name_of_the_current_step_means_the_workspace(worksp
 
 
 def test_a_forgotten_slash_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS2_WORKSPACE", "~ros2_ws")
-    with pytest.raises(UsageError, match=r"the user ros2_ws, who does not exist\. Did you mean ~/ros2_ws\?"):
+    monkeypatch.setenv("ROS2_WORKSPACE", "~ros2_ws/second")
+    with pytest.raises(UsageError, match=r"the user ros2_ws, who does not exist\. Did you mean ~/ros2_ws/second\?"):
         meant(None, None)
 
 
