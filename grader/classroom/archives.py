@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import os
 import tempfile
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -197,8 +198,15 @@ def _write_all(members: Iterable[Member], folder: Path) -> None:
 
 
 def _write(member: Member, folder: Path) -> None:
-    """Write a file, or make a folder or a link. As with unzip and tar, a file of the same name is replaced."""
+    """Write a file, or make a folder or a link. As with unzip and tar, a file of the same name is replaced.
+
+    Nothing is written through a link. `read_archive` returns no member below a link, but two names can be the same on a
+    disk that ignores capital letters.
+    """
     target = folder.joinpath(*member.parts)
+    if os.path.realpath(target.parent) != os.path.join(os.path.realpath(folder), *member.parts[:-1]):  # noqa: PTH118
+        message = f"contains {shown('/'.join(member.parts))} below a link"
+        raise DamagedArchiveError(message)
     try:
         is_folder = member.content is None and not member.link
         (target if is_folder else target.parent).mkdir(parents=True, exist_ok=True)
@@ -206,6 +214,8 @@ def _write(member: Member, folder: Path) -> None:
             target.unlink(missing_ok=True)
             target.symlink_to(member.link)
         elif member.content is not None:
+            if target.is_symlink():
+                target.unlink()
             target.write_bytes(member.content)
             target.chmod(0o755 if member.executable else 0o644)
     except (FileExistsError, NotADirectoryError, IsADirectoryError) as error:

@@ -177,10 +177,13 @@ def _is_one(folder: Path) -> bool:
 def _is_one_alone(folder: Path) -> bool:
     """Return whether a folder that was given to the command is itself a submission, and not a class.
 
-    In a class, a student's folder can have any name, such as "setup.py" or "exercises".
+    In a class, a student's folder can have any name, such as "setup.py" or "exercises", and a file of a package can be
+    beside the submissions. A package that lacks one of its files can contain a copy of itself.
     """
-    if any(os.path.isfile(folder / name) for name in PACKAGE_FILES):
-        return True
+    present = [name for name in PACKAGE_FILES if os.path.isfile(folder / name)]
+    if present:
+        inside = [each for each in _entries(folder) if os.path.isdir(each) and _is_handed_in(each)]
+        return len(inside) < len(present)
     if not os.path.isdir(folder / OWN):
         return False
     others = [each for each in _entries(folder) if each.name not in _OF_THE_COURSE and _student(each) is not None]

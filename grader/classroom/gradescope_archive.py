@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 TEMPLATES = Path(__file__).parent / "templates"
 SCRIPTS = {"setup.sh": "gradescope-setup.sh", "run_autograder": "gradescope-run_autograder"}
 _FILES = ("LICENSE", "Makefile", "README.md", "pyproject.toml", "requirements.lock")
-_FOLDERS = ("course", "grader")
+_FOLDERS = ("course", "exercises", "grader")
+"""`exercises` has the starting points, with which the cells of a notebook are compared."""
 _LEFT_OUT = frozenset({"__pycache__", "tests", "benchmarks"})
 _WHEN = (1980, 1, 1, 0, 0, 0)
 """A fixed date, so that equal files always give an equal archive."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import secrets
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,16 +21,27 @@ MARK = ".grader-results"
 _BYTES = 16
 
 
-def mark(file: Path) -> None:
-    """Write a mark to the new file, and add the mark to this user's list of marks if the list is writable."""
+def mark(file: Path, *, needed: bool) -> None:
+    """Add a mark to this user's list of marks, and write it to the new file, completely or not at all.
+
+    Raises OSError if the file cannot be written or, if the list is `needed`, if the list cannot be written.
+    """
     made = secrets.token_hex(_BYTES)
-    file.write_text(made, "ascii")
-    with suppress(OSError):
+    try:
         known = _known()
         known.parent.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(known, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
         with os.fdopen(descriptor, "w", encoding="ascii") as opened:
             opened.write(f"{made}\n")
+    except OSError:
+        if needed:
+            raise
+    partial = file.with_name(f"{file.name}.partial")
+    try:
+        partial.write_text(made, "ascii")
+        partial.replace(file)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def has_results(folder: Path) -> bool:
@@ -49,11 +59,11 @@ def has_results(folder: Path) -> bool:
 
 
 def is_among(folder: Path, others: Iterable[Path]) -> bool:
-    """Return whether `folder` is in one of the other folders.
+    """Return whether `folder` is one of the other folders, or is in one of them.
 
     If `folder` itself is a link, the location of the link counts, not the location of its target.
     """
-    place = Path(os.path.realpath(folder.parent))
+    place = Path(os.path.realpath(folder.parent), folder.name)
     return any(place.is_relative_to(os.path.realpath(each)) for each in others)
 
 

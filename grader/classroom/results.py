@@ -142,8 +142,8 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             student could have created it.
         MachineError: the folder cannot be written.
     """
-    lock = folder / MARK
-    if os.path.lexists(folder) and is_among(folder, submissions) and (folder.is_symlink() or not has_results(folder)):
+    lock, among, new = folder / MARK, is_among(folder, submissions), not os.path.lexists(folder)
+    if not new and among and (folder.is_symlink() or not has_results(folder)):
         message = (
             f"{folder} is among the submissions, and nothing shows that you created it with `grader grade`: a student "
             "may have put forged results there. Choose another folder with --out."
@@ -160,14 +160,19 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir(mode=0o700, exist_ok=True)  # marks and hidden checks are not for other users of the machine
-        (folder / REPORTS).mkdir(exist_ok=True)
         if not lock.exists():
-            mark(lock)
+            mark(lock, needed=among)
+        (folder / REPORTS).mkdir(exist_ok=True)
         file = lock.open("a")
     except OSError as error:
+        if new and not has_results(folder):
+            with suppress(OSError):
+                folder.rmdir()  # otherwise, the next run could not use it
         todo = "Free some space" if error.errno in (errno.ENOSPC, errno.EDQUOT) else "Make the folder writable"
         instead = ", or choose another folder with --out" if chosen else ""
-        message = f"The results cannot be written to {folder}: {error.strerror}. {todo}{instead}."
+        path = str(error.filename or folder)
+        where = "" if path.startswith(str(folder)) else f" ({path})"  # the list of marks
+        message = f"The results cannot be written to {folder}: {error.strerror}{where}. {todo}{instead}."
         raise MachineError(message) from error
     with file:
         try:

@@ -122,23 +122,11 @@ class _StopsWithTheDisk(BaseConverter):  # type: ignore[misc, unused-ignore]
             raise _DiskError(failure) from error
 
 
-class _Autograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]
-    """nbgrader's Autograde, in which the base class `_Copying` copies the files."""
+class _Resumed(BaseConverter):  # type: ignore[misc, unused-ignore]
+    """If an earlier run was killed and left an unfinished destination, removes it, since nbgrader would skip it."""
 
     def init_destination(self, assignment_id: str, student_id: str) -> bool:
-        """Initialize the destination as nbgrader's method does, and return its result.
-
-        If the submission time is invalid, only this submission fails. A submission is skipped if the name of the
-        student's folder is another spelling of an id in the gradebook, because nbgrader would add a second student. If
-        an earlier run was killed and left an unfinished destination, this destination is removed, because nbgrader
-        would skip the submission.
-        """
-        with Gradebook(self.coursedir.db_url, self.coursedir.course_id) as gradebook:
-            enrolled = {student.id for student in gradebook.students}
-        if student_id not in enrolled and (why := unclear([student_id], enrolled)):
-            self.log.error("Not autograded: %s", why[student_id].reason)
-            return False
-        read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
+        """Remove an unfinished destination, and initialize it as the base class does."""
         dest = Path(self._format_dest(assignment_id, student_id))
         self._mark = dest.with_name(f".{dest.name}.unfinished")
         if self._mark.exists() and dest.exists():
@@ -156,6 +144,24 @@ class _Autograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]
         self._mark.unlink()
 
 
+class _Autograde(_Resumed, Autograde, _Copying):  # type: ignore[misc, unused-ignore]
+    """nbgrader's Autograde, in which the base class `_Copying` copies the files."""
+
+    def init_destination(self, assignment_id: str, student_id: str) -> bool:
+        """Initialize the destination as nbgrader's method does, and return its result.
+
+        If the submission time is invalid, only this submission fails. A submission is skipped if the name of the
+        student's folder is another spelling of an id in the gradebook, because nbgrader would add a second student.
+        """
+        with Gradebook(self.coursedir.db_url, self.coursedir.course_id) as gradebook:
+            enrolled = {student.id for student in gradebook.students}
+        if student_id not in enrolled and (why := unclear([student_id], enrolled)):
+            self.log.error("Not autograded: %s", why[student_id].reason)
+            return False
+        read(readable.time_of, Path(self._format_source(assignment_id, student_id)))
+        return super().init_destination(assignment_id, student_id)
+
+
 def _in(folder: Path, notebooks: Sequence[str]) -> list[str]:
     """Return the notebooks in this folder whose names can be printed.
 
@@ -169,7 +175,7 @@ class BoundedAutograde(_StopsWithTheDisk, _Autograde):
     """nbgrader's Autograde with limits on what it reads."""
 
 
-class _Feedback(GenerateFeedback):  # type: ignore[misc, unused-ignore]
+class _Feedback(_Resumed, GenerateFeedback):  # type: ignore[misc, unused-ignore]
     """nbgrader's GenerateFeedback, but it copies only the time stamp and the secret of a submission.
 
     If it copied all files, nbgrader would also release the student's own .html files.
@@ -257,15 +263,20 @@ class BoundedCollect(ExchangeCollect):  # type: ignore[misc, unused-ignore]
         """Copy one submission. If the copy fails, log a warning and continue with the other submissions.
 
         If the disk has failed, stop, because nbgrader removes a student's earlier submission before each copy. Other
-        students would lose their earlier submissions.
+        students would lose their earlier submissions. An incomplete copy has another name, because nbgrader would not
+        collect a submission again for which there is a folder.
         """
+        copy = Path(dest).with_name(f".{Path(dest).name}.unfinished")
         with temporary_folder() as folder:
             safe = folder / "submission"
             try:
                 left_out = copy_of(Path(src), safe)
                 read(readable.time_of, safe)
-                super().do_copy(str(safe), dest, log)
+                shutil.rmtree(copy, ignore_errors=True)
+                super().do_copy(str(safe), str(copy), log)
+                copy.rename(dest)
             except (GraderError, OSError, RuntimeError) as error:
+                shutil.rmtree(copy, ignore_errors=True)
                 if failure := failed_disk(error, dest):
                     self.fail(f"{failure} Then run the same command again.")
                 self.log.warning("%s could not be collected: %s", tree.shown(src), error)

@@ -7,6 +7,9 @@ any score in the table.
 from __future__ import annotations
 
 import csv
+import io
+import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +19,7 @@ from grader.classroom.results import Results
 from grader.common.words import a_list, count, printable
 from grader.gradebook.class_folders import CLASS, RESULTS
 from grader.gradebook.confirmed import withhold_unconfirmed
+from grader.gradebook.failed_disk import failed_disk
 from grader.report.csv import without_formula
 
 if TYPE_CHECKING:
@@ -54,12 +58,35 @@ class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
                 count(len(names), "submission"),
                 a_list(names),
             )
+        table = io.StringIO(newline="")
+        writer = csv.writer(table, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        writer.writerows(_rows(gradebook, set(map(str, self.assignment)), set(map(str, self.student))))
         file = Path(self.to or "grades.csv")
-        with file.open("w", encoding="utf-8", errors="backslashreplace", newline="") as opened:
-            writer = csv.writer(opened, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows(_rows(gradebook, set(map(str, self.assignment)), set(map(str, self.student))))
+        try:
+            _write(file, table.getvalue().encode("utf-8", "backslashreplace"))
+        except OSError as error:
+            reason = failed_disk(error, file) or f"{file} could not be written: {error.strerror}."
+            self.log.critical("%s An older table is unchanged.", reason)
+            sys.exit(1)
         self.log.info("Exported the grades to %s", file)
+
+
+def _write(file: Path, content: bytes) -> None:
+    """Write the file, completely or not at all, unless it is a pipe or a device. Raises OSError."""
+    if file.exists() and not file.is_file():
+        file.write_bytes(content)
+        return
+    file = file.resolve()
+    partial = file.with_name(f".{file.name}.partial")
+    try:
+        with partial.open("wb") as opened:
+            opened.write(content)
+            opened.flush()
+            os.fsync(opened.fileno())
+        partial.replace(file)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401

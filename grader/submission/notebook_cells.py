@@ -60,7 +60,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
 
 
 def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
-    """Return the files that cells with these sources write. A cell with an invalid name writes nothing.
+    """Return the files that cells with these sources write. A cell with an invalid name or text writes nothing.
 
     If several cells write the same file, the last of these cells counts.
     """
@@ -72,15 +72,18 @@ def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
             continue
         try:
             path = part_path(match[1], match[2], exercise)
-        except UsageError:
+            source.encode()
+        except (UsageError, UnicodeEncodeError):  # JSON can contain half of a surrogate pair
+            continue
+        if "\0" in path:
             continue
         parts[path] = Part(path, ended(rest))
     return list(parts.values())
 
 
 def ended(text: str) -> str:
-    """Return the text with exactly one newline at its end."""
-    return text.rstrip("\n") + "\n"
+    """Return the text with the line ends of Linux, and exactly one newline at its end."""
+    return text.replace("\r\n", "\n").rstrip("\n") + "\n"
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:

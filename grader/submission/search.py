@@ -165,7 +165,7 @@ def _none(search: _Search, root: int, name: str) -> str:
         return f"{none} colcon ignores {shown(search.ignored[0])}, because it contains a file {IGNORE_MARKER}."
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
-            return f"{none} The folder is inside the package {shown(str(above))}: give that folder."
+            return f"{none} The folder is inside the package {shown(above.name)}: give that folder."
     listing = tree.entries(root)
     if listing is None:
         return f"{none} The folder contains more than {tree.MAX_ENTRIES} files and folders. {GIVE}"

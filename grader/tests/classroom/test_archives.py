@@ -17,7 +17,7 @@ import pytest
 
 from grader.classroom import archives, unpack
 from grader.classroom.archives import copied, sha256_of, stem, unpacked
-from grader.classroom.unpack import NotUnpackedError
+from grader.classroom.unpack import Member, NotUnpackedError
 from grader.errors import DiskError
 from grader.submission import reader
 from grader.tests.classroom.made_archives import files, member, tar, zipped
@@ -161,6 +161,20 @@ def test_a_hole_in_unpacking_reaches_no_other_file(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(unpack, "_parts", attack)
     assert files(zipped(tmp_path / "a.zip", ("a", b"1"))) == {"failed": b"1"}
     assert not (tmp_path / "owned").exists()
+
+
+def test_nothing_is_written_through_a_link_on_a_disk_that_ignores_capital_letters(tmp_path: Path) -> None:
+    """On such a disk, the file a/owned of an archive would be below its link A."""
+    (tmp_path / "theirs").mkdir()
+    (tmp_path / "folder").mkdir()
+    link = Member(("a",), link=str(tmp_path / "theirs"))
+    with pytest.raises(NotUnpackedError, match="contains a/owned below a link"):
+        archives._write_all([link, Member(("a", "owned"), content=b"1")], tmp_path / "folder")
+    with pytest.raises(NotUnpackedError, match="contains a/owned/x below a link"):
+        archives._write_all([link, Member(("a", "owned", "x"), content=b"1")], tmp_path / "folder")
+    archives._write_all([link, Member(("a",), content=b"1")], tmp_path / "folder")
+    assert (tmp_path / "folder/a").read_bytes() == b"1"
+    assert list((tmp_path / "theirs").iterdir()) == []
 
 
 @pytest.mark.parametrize("fails", ["folder", "file"])

@@ -160,9 +160,19 @@ def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> Non
 
 def test_a_package_or_an_archive_alone_is_one_submission(tmp_path: Path) -> None:
     copy_solution(STEP, tmp_path / "anna")
+    copy_solution(STEP, tmp_path / "anna/my_robot_controller/my_robot_controller")  # a copy of the package inside it
     zipped(tmp_path / "anna", tmp_path / "ben.zip", "my_robot_controller")
     found = find_submissions([tmp_path / "anna", tmp_path / "ben.zip"], STEP, tmp_path / "grades")
     assert [each.student for each in found] == ["anna", "ben"]
+
+
+@pytest.mark.parametrize("loose", [["setup.py"], ["package.xml"], ["setup.py", "package.xml"]])
+def test_no_loose_file_of_a_package_hides_the_class(tmp_path: Path, loose: list[str]) -> None:
+    for student in ("anna", "ben"):
+        copy_solution(STEP, tmp_path / student / "my_robot_controller")
+    for name in loose:
+        (tmp_path / name).touch()
+    assert [student for student, *_ in names(tmp_path, STEP)] == ["anna", "ben"]
 
 
 def test_results_inside_a_submission_are_refused(tmp_path: Path) -> None:

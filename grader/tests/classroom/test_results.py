@@ -5,12 +5,14 @@ from __future__ import annotations
 import errno
 import os
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.key import Key, changed, grader_key
+from grader.classroom.own_folders import MARK
 from grader.classroom.results import Results, file_name, opened
 from grader.errors import MachineError, UsageError
 from grader.tests.report.reports import report
@@ -77,6 +79,40 @@ def test_a_student_cannot_choose_the_folder_of_the_results_with_a_link(tmp_path:
 def test_an_empty_folder_among_the_submissions_is_not_taken_for_the_results(tmp_path: Path) -> None:
     (tmp_path / "grades").mkdir()
     with pytest.raises(UsageError, match="nothing shows that you created it"), opened(tmp_path / "grades", [tmp_path]):
+        pass
+
+
+def test_the_folder_of_the_submissions_is_not_taken_for_the_results(tmp_path: Path) -> None:
+    (tmp_path / MARK).write_text("0" * 32)
+    with pytest.raises(UsageError, match="may have put forged results there"), opened(tmp_path, [tmp_path]):
+        pass
+
+
+def test_after_a_full_disk_the_same_command_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> NoReturn:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    grades = tmp_path / "grades"
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "write_text", full)
+        with pytest.raises(MachineError, match="Free some space"), opened(grades, [tmp_path]):
+            pass
+    for _ in range(2):
+        with opened(grades, [tmp_path]):
+            assert {each.name for each in grades.iterdir()} == {MARK, "reports"}
+
+
+def test_results_among_the_submissions_need_the_list_of_marks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the list, the next run could not tell the results from forged ones."""
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "file"))
+    with (
+        pytest.raises(MachineError, match=r"grades: Not a directory \(.*file/"),
+        opened(tmp_path / "class/grades", [tmp_path / "class"]),
+    ):
+        pass
+    assert not (tmp_path / "class/grades").exists()
+    with opened(tmp_path / "elsewhere", [tmp_path / "class"]):
         pass
 
 

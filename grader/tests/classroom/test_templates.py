@@ -19,6 +19,7 @@ import yaml
 from grader.classroom.archives import unpacked
 from grader.classroom.gradescope_archive import TEMPLATES, build_archive
 from grader.errors import UsageError
+from grader.exercise.model import course_folder
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment
@@ -130,6 +131,22 @@ def test_gradescopes_archive_has_what_it_needs_and_no_solutions(tmp_path: Path) 
     assert all(mode & 0o111 for mode in modes.values())
     assert {"trust-submissions", f"checks/{STEP}/exercise.toml", "course/requirements.lock"} <= set(names)
     assert [name for name in names if "solutions" in name or "/tests/" in name] == []
+
+
+def test_gradescopes_archive_reads_a_submission_with_a_notebook(tmp_path: Path) -> None:
+    """The cells of a notebook are compared with the starting point."""
+    build_archive(STEP, tmp_path / "autograder.zip", None)
+    with unpacked(tmp_path / "autograder.zip") as folder:
+        code = (
+            "import sys, grader\nfrom grader.checks.exercises import find_exercise\n"
+            "from grader.submission.handed_in import open_handed_in\n"
+            "opened = open_handed_in(sys.argv[1], find_exercise(sys.argv[2]))\nprint(grader.__file__, *opened.files)"
+        )
+        handed_in = course_folder().parent / "exercises" / STEP
+        command = [sys.executable, "-c", code, str(handed_in), STEP]
+        env = {**os.environ, "PYTHONPATH": f"{folder}/course:{os.environ.get('PYTHONPATH', '')}"}
+        done = subprocess.run(command, env=env, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stdout.startswith(f"{folder}/course/grader/__init__.py my_robot_controller/"), done.stderr
 
 
 def test_wrong_checks_make_no_gradescope_archive(tmp_path: Path) -> None:

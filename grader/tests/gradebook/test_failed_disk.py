@@ -16,7 +16,7 @@ from nbgrader.exchange import ExchangeError
 from nbgrader.utils import notebook_hash
 
 from grader.errors import MachineError
-from grader.gradebook import converters
+from grader.gradebook import converters, export
 from grader.gradebook.converters import BoundedAutograde, BoundedCollect, BoundedFeedback
 from grader.gradebook.failed_disk import failed_disk
 from grader.tests.gradebook.term import STEP, Term
@@ -110,6 +110,15 @@ def test_the_converters_stop_at_the_first_submission(
     assert not os.path.lexists(Path(converter._format_dest(STEP, "anna")) / f"{STEP}.html")
 
 
+def test_feedback_whose_run_was_killed_is_made_again(tmp_path: Path) -> None:
+    converter = BoundedFeedback(coursedir=_course(tmp_path))
+    page = Path(converter._format_dest(STEP, "anna")) / f"{STEP}.html"
+    page.parent.mkdir(parents=True)
+    assert not converter.init_destination(STEP, "anna")
+    (page.parent.parent / f".{STEP}.unfinished").touch()
+    assert converter.init_destination(STEP, "anna")
+
+
 def test_another_error_does_not_stop_the_converters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     converter = BoundedFeedback(coursedir=_course(tmp_path))
     tried: list[Any] = []
@@ -136,3 +145,40 @@ def test_collecting_stops_before_another_earlier_submission_is_removed(
     with pytest.raises(ExchangeError, match="The disk is full for /written"):
         collect.copy_files()
     assert (tmp_path / "submitted" / "ben" / STEP).is_dir()
+
+
+def test_a_submission_that_was_collected_only_in_part_is_collected_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    collect = BoundedCollect(coursedir=_course(tmp_path / "class"))
+    submission, dest = tmp_path / "inbound", tmp_path / "class/submitted/carl" / STEP
+    submission.mkdir()
+    (submission / "timestamp.txt").write_text("2027-03-01 10:00:00 UTC")
+
+    def full(src: str, dst: str, **_: object) -> NoReturn:
+        Path(dst).mkdir(parents=True)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), src, None, dst)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "copytree", full)
+        with pytest.raises(ExchangeError, match="Then run the same command again"):
+            collect.do_copy(str(submission), str(dest))
+    assert list(dest.parent.iterdir()) == []
+    (dest.parent / f".{STEP}.unfinished").mkdir()  # as after a run that was killed
+    collect.do_copy(str(submission), str(dest))
+    assert [each.name for each in dest.parent.iterdir()] == [STEP]
+    assert (dest / "timestamp.txt").is_file()
+
+
+def test_the_table_is_written_completely_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> NoReturn:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    table = tmp_path / "grades.csv"
+    export._write(table, b"old")
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        export._write(table, b"new")
+    assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [("grades.csv", b"old")]
+    export._write(Path(os.devnull), b"new")  # not replaced by a file
+    assert not Path(os.devnull).is_file()

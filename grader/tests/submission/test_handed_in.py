@@ -53,6 +53,7 @@ def node_of(folder: Path) -> str:
         ("mine\n", start(NODE), "mine\n"),  # the cell was changed, but never executed
         ("mine\n", "edited later\n", "edited later\n"),  # the file was changed
         (start(NODE), "mine\n", "mine\n"),  # only the file was changed
+        ("mine\n", start(NODE).replace("\n", "\r\n"), "mine\n"),  # only the line ends of the file were changed
     ],
 )
 def test_which_text_is_graded(tmp_path: Path, cell: str, node: str, graded: str) -> None:
@@ -70,6 +71,16 @@ def test_a_notebook_alone_is_completed_with_the_starting_point(tmp_path: Path) -
     opened = open_handed_in(submitted, CIRCLE)
     assert opened.files["setup.py"].decode() == start(f"{PACKAGE}/setup.py")
     assert opened.package_dir == submitted / PACKAGE
+
+
+def test_a_cell_that_cannot_be_a_file_does_not_count(tmp_path: Path) -> None:
+    submitted = handed_in(tmp_path / "in", "mine", {})
+    notebook = submitted / f"{CIRCLE.id}.ipynb"
+    cells = json.loads(notebook.read_text())["cells"]
+    for source in ("%%node half.py\n# \ud83d", "%%package a\0b\n"):
+        cells.append({"cell_type": "code", "source": source})
+    notebook.write_text(json.dumps({"cells": cells}))
+    assert node_of(submitted) == "mine\n"
 
 
 def test_an_unchanged_notebook_is_not_a_package(tmp_path: Path) -> None:

@@ -141,7 +141,7 @@ def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
 
 
 def test_inside_of_the_package_the_folder_around_is_proposed(package: Path) -> None:
-    assert refused(package / "pkg").endswith(f"The folder is inside the package {package.resolve()}: give that folder.")
+    assert refused(package / "pkg").endswith(f"The folder is inside the package {package.name}: give that folder.")
 
 
 @pytest.mark.parametrize("name", ["Package.xml", "package.xml.txt", "SETUP.PY"])
