@@ -21,7 +21,9 @@ def absolute(name: str) -> str:
 def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
     """Return the full names of the nodes, sorted. Hidden nodes are included only if `all_of_them` is true.
 
+    As in the real `ros2`, a node is hidden if its own name begins with "_", also if its namespace does not.
+
     If several nodes have the same name, the list contains this name several times.
     """
-    found = [f"{namespace.rstrip('/')}/{name}" for name, namespace in node.get_node_names_and_namespaces()]
-    return sorted(name for name in found if all_of_them or not hidden(name))
+    found = node.get_node_names_and_namespaces()
+    return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if all_of_them or not name.startswith("_"))

@@ -71,8 +71,14 @@ class Cells:
 
         Nothing is run when nbgrader executes the notebook, because nobody reads the output.
         """
-        if not grading():
-            run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
+        if grading():
+            return
+        try:
+            words = shlex.split(line)
+        except ValueError as error:
+            message = f"The command has a quote that is not closed, or ends with a backslash: {line}."
+            raise UsageError(message) from error
+        run_below([str(Path(sys.prefix, "bin", "ros2")), *words])
 
     def current(self) -> Exercise:
         """Return the step that this notebook is for. Raises UsageError if `%step` has not been run."""

@@ -14,6 +14,7 @@ import os
 import signal
 import struct
 import subprocess
+import tempfile
 import threading
 import time
 from contextlib import suppress
@@ -34,12 +35,17 @@ START_S = 120.0
 """The maximum time to wait for turtlesim's first picture (s). A busy machine may need many seconds. If turtlesim exits,
 the wait ends at once."""
 
+_MOST_SAID = 10_000
+"""The maximum length of turtlesim's output that is read (bytes)."""
+
 
 class Simulator:
     """A running turtlesim that is shown below the cell. Nothing is run when nbgrader executes the notebook."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
+        # A file, since turtlesim would wait when a pipe is full: at a wall, it logs a warning for each frame.
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115
         self._picture = b""
         self._changed = threading.Event()
         self._reader: threading.Thread | None = None
@@ -59,12 +65,16 @@ class Simulator:
             env=live.env,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=self._said,
             start_new_session=True,
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
-        self._changed.wait(START_S)
+        try:
+            self._changed.wait(START_S)
+        except BaseException:  # the cell was interrupted
+            self._end()
+            raise
         if not self._picture:
             output = self._end()
             message = f"turtlesim did not start: {(output.strip().splitlines() or ['it printed nothing'])[-1]}"
@@ -128,7 +138,6 @@ class Simulator:
         process = self._process
         assert process is not None
         assert process.stdin is not None
-        assert process.stderr is not None
         with suppress(OSError):
             process.stdin.close()
         _wait_or_kill(process)
@@ -136,8 +145,9 @@ class Simulator:
             self._reader.join(2.0)
         if self._picture and hasattr(self, "_handle"):
             self._update()
-        output = process.stderr.read().decode("utf-8", "replace")
-        process.stderr.close()
+        self._said.seek(max(0, self._said.seek(0, os.SEEK_END) - _MOST_SAID))
+        output = self._said.read().decode("utf-8", "replace")
+        self._said.close()
         self._process = None
         self._changed.set()
         return output

@@ -18,7 +18,7 @@ from grader.ros.shell import users_environment
 from grader.view.address import Address, remembered
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
 KEPT = 200
@@ -52,6 +52,7 @@ class Program:
         self._changed = changed
         self._process: asyncio.subprocess.Process | None = None
         self._reading: asyncio.Task[None] | None = None
+        self._starting = asyncio.Lock()
 
     @property
     def running(self) -> bool:
@@ -65,8 +66,11 @@ class Program:
 
         With `held`, the program's standard input is a pipe that closes when this process ends for any reason.
         """
-        if self.running:
-            return
+        async with self._starting:  # a double click asks twice
+            if not self.running:
+                await self._start(arguments, says, held=held)
+
+    async def _start(self, arguments: Sequence[str], says: str, *, held: bool) -> None:
         # The page shows the turtle, so no other page is opened.
         env = {name: value for name, value in os.environ.items() if name not in _SCREENS}
         # Do not start the ros2 daemon, which would continue to run.

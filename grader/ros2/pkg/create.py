@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -100,7 +101,7 @@ def _wanted(args: argparse.Namespace) -> NewPackage:
     return NewPackage(
         name=args.package_name,
         folder=folder,
-        shown=str(folder) if folder.is_absolute() else f"./{folder}",
+        shown=os.path.join(args.destination_directory, args.package_name),  # noqa: PTH118 - Path drops "./"
         build_type=args.build_type,
         package_format=args.package_format,
         description=args.description,

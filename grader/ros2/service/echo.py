@@ -8,6 +8,7 @@ from grader.graph.names import absolute
 from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros.rendering import Form, dumped, plain, to_csv
+from grader.ros2 import qos
 from grader.ros2.completion import completes, service_types, services
 from grader.ros2.format_options import add_form, form_of
 
@@ -31,6 +32,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--csv", action="store_true", help="print each event on one line, with commas between the values"
     )
+    qos.add_qos(parser, "services_default")
     add_form(parser)
 
 
@@ -38,10 +40,8 @@ def run(args: argparse.Namespace) -> int:
     """Print the events until Ctrl-C.
 
     Raises:
-        Ros2Error: the name is invalid, or the type of the service cannot be determined or is not installed.
+        Ros2Error: the name or the QoS is invalid, or the type of the service cannot be determined or is not installed.
     """
-    from rclpy.qos import QoSPresetProfiles
-
     from grader.graph.discovery import cli_node, settle, spin_until
     from grader.ros2.topic import topic_lookup
 
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
         def show(event: Any) -> None:  # noqa: ANN401
             print(to_csv(event, form) if args.csv else _as_yaml(event, form), flush=True)
 
-        node.create_subscription(made.Event, topic, show, QoSPresetProfiles.SERVICES_DEFAULT.value)
+        node.create_subscription(made.Event, topic, show, qos.profile(args))
         if node.count_publishers(topic) < 1:
             warning = f"No publishers on topic '{args.service_name}/_service_event'; "
             print(f"{warning}is service introspection on the client or server enabled?", flush=True)

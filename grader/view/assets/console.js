@@ -31,6 +31,7 @@ export class Console {
   constructor({ table, place, count, levels, node, text, pause, clear }) {
     Object.assign(this, { body: table.tBodies[0], place, count, levels, node, text, pause });
     this.lines = [];
+    this.cleared = 0;
     this.held = null;
     levels.append(...LEVELS.map((name) => {
       const label = document.createElement("label");
@@ -41,7 +42,7 @@ export class Console {
     for (const part of [levels, node]) part.addEventListener("change", () => this.draw());
     text.addEventListener("input", () => this.draw());
     pause.addEventListener("click", () => this.hold(this.held === null));
-    clear.addEventListener("click", () => { this.lines = []; this.draw(); });
+    clear.addEventListener("click", () => this.clear());
   }
 
   // While the table is paused, new messages are kept and added afterwards.
@@ -52,8 +53,17 @@ export class Console {
     this.draw();
   }
 
+  // The server sends all messages again when the page connects again.
+  clear() {
+    this.cleared = this.lines.at(-1)?.number ?? this.cleared;
+    this.lines = [];
+    if (this.held !== null) this.held = [];
+    this.draw();
+  }
+
   whole(lines) {
-    this.lines = lines;
+    if ((lines.at(-1)?.number ?? 0) < this.cleared) this.cleared = 0; // the server was started again
+    this.lines = lines.filter((line) => line.number > this.cleared);
     this.named();
     if (this.held === null) this.draw();
   }

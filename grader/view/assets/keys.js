@@ -25,6 +25,7 @@ export class Keys {
   key(event, down) {
     const arrow = ARROWS[event.key];
     if (arrow && !down) this.set(arrow, false);
+    if (document.body.classList.contains("graph-only")) return; // there is no turtle, so the arrow keys scroll
     // Ignore keys in input fields, and shortcuts.
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.("select, input, textarea")) return;
     if (arrow) {

@@ -9,7 +9,10 @@ export class Services {
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       const chosen = this.known.get(service.value);
-      if (!chosen) return;
+      if (!chosen) {
+        this.status.textContent = service.value ? `${service.value} is not in the graph.` : "";
+        return;
+      }
       this.waits = { id: crypto.getRandomValues(new Uint32Array(2)).join("-"), name: chosen.name };
       this.status.textContent = `Waiting for ${chosen.name}`;
       call({ ...this.waits, type: chosen.type, request: request.value });
@@ -19,7 +22,10 @@ export class Services {
   show(services) {
     const before = this.service.value;
     this.known = new Map(services.map((each) => [each.name, each]));
-    this.service.replaceChildren(...services.map(({ name }) => new Option(name, name, false, name === before)));
+    const names = services.map(({ name }) => name);
+    // The node of the chosen service may have been stopped only for a moment.
+    if (before && !this.known.has(before)) names.push(before);
+    this.service.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
     if (this.service.value !== before) this.choose();
   }
 

@@ -64,7 +64,7 @@ class Plotted:
                 self._wanted.setdefault(name, _WAITING)
 
     def remove(self, name: str) -> None:
-        """Stop plotting a field."""
+        """Stop plotting a field. If it is part of another wanted field, the other parts are plotted again."""
         self._wanted.pop(name, None)
         for topic in list(self._topics):
             paths = self._topics[topic].paths
@@ -73,6 +73,9 @@ class Plotted:
                 self._new.pop(series, None)
             if not paths:
                 self._node.destroy_subscription(self._topics.pop(topic).subscription)
+        for other in self._wanted:
+            if f"{other}/".startswith(f"{name}/") or f"{name}/".startswith(f"{other}/"):
+                self._wanted[other] = _WAITING
 
     def look(self, observed: Observed) -> None:
         """Subscribe to the topic of each wanted field as soon as the topic has a publisher."""
