@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import stat
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -84,6 +85,8 @@ def _write(file: Path, content: bytes) -> None:
             opened.write(content)
             opened.flush()
             os.fsync(opened.fileno())
+        if file.exists():
+            partial.chmod(stat.S_IMODE(file.stat().st_mode))
         partial.replace(file)
     finally:
         partial.unlink(missing_ok=True)

@@ -10,6 +10,7 @@ kernel exits.
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import struct
@@ -19,7 +20,7 @@ import threading
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError, UsageError
@@ -44,8 +45,7 @@ class Simulator:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        # A file, since turtlesim would wait when a pipe is full: at a wall, it logs a warning for each frame.
-        self._said = tempfile.TemporaryFile()  # noqa: SIM115
+        self._said: IO[bytes] = io.BytesIO()
         self._picture = b""
         self._changed = threading.Event()
         self._reader: threading.Thread | None = None
@@ -58,6 +58,8 @@ class Simulator:
         from IPython.display import Image, display
 
         self._env = environment()
+        # A file, since turtlesim would wait when a pipe is full: at a wall, it logs a warning for each frame.
+        self._said = tempfile.TemporaryFile()
         live = interpreter("-m", "grader.turtlesim.live", env=self._env, searches=True)
         self._process = subprocess.Popen(
             live.argv,

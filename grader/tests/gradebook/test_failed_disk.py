@@ -175,7 +175,10 @@ def test_the_table_is_written_completely_or_not_at_all(tmp_path: Path, monkeypat
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     table = tmp_path / "grades.csv"
+    export._write(table, b"older")
+    table.chmod(0o600)
     export._write(table, b"old")
+    assert table.stat().st_mode & 0o777 == 0o600
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space left"):
         export._write(table, b"new")
