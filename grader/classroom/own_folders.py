@@ -59,11 +59,11 @@ def has_results(folder: Path) -> bool:
 
 
 def is_among(folder: Path, others: Iterable[Path]) -> bool:
-    """Return whether `folder` is one of the other folders, or is in one of them.
+    """Return whether `folder` is in one of the other folders.
 
     If `folder` itself is a link, the location of the link counts, not the location of its target.
     """
-    place = Path(os.path.realpath(folder.parent), folder.name)
+    place = Path(os.path.realpath(folder.parent))
     return any(place.is_relative_to(os.path.realpath(each)) for each in others)
 
 

@@ -21,7 +21,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.classroom.own_folders import MARK, has_results, is_among, mark
+from grader.classroom.own_folders import MARK, has_results, is_among, is_same, mark
 from grader.errors import DiskError, MachineError, UsageError
 from grader.report.json import from_json, to_data
 from grader.report.suspicion import ERRORS
@@ -142,7 +142,9 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             student could have created it.
         MachineError: the folder cannot be written.
     """
-    lock, among, new = folder / MARK, is_among(folder, submissions), not os.path.lexists(folder)
+    lock, new = folder / MARK, not os.path.lexists(folder)
+    marked = os.path.lexists(lock)  # perhaps by a student, if it is the folder of the submissions
+    among = is_among(folder, submissions) or (marked and any(is_same(folder, each) for each in submissions))
     if not new and among and (folder.is_symlink() or not has_results(folder)):
         message = (
             f"{folder} is among the submissions, and nothing shows that you created it with `grader grade`: a student "

@@ -56,7 +56,7 @@ OTHERS = {
     ("holder", "__init__"): "bubblewrap, with the command of the caller",
     ("launchers", "__init__"): "the command of conductor._launcher",
     ("notebooks", "seconds"): "the command of the nested function `nbgrader`",
-    ("programs", "start"): "a command of interpreter() in the same function",
+    ("programs", "_start"): "a command of interpreter() in the same function",
     ("open_page", "_screen"): "our command grader",
     ("process", "run"): "bubblewrap, with the command of colcon.runner.build",
     ("relay", "run"): "bubblewrap, with the command of gradebook.confined_autograde._order",
