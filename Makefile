@@ -33,7 +33,6 @@ docs: python3 ## build README, docs/ and the lessons as a site in build/site; a 
 	@$(BIN)/sphinx-build -q -W --keep-going -n -c docs -d build/site-doctrees . build/site
 	@echo "The documentation: build/site/index.html"
 
-# Many tests wait, so five processes used only 60 % of two processors.
 test: lint ## set up, lint, and run all tests except the exhaustive ones
 	@$(BIN)/python -m pytest -n $$(( 3 * $$(nproc) + 2 )) --dist loadscope --no-loadscope-reorder
 
