@@ -34,7 +34,7 @@ docs: python3 ## build README, docs/ and the lessons as a site in build/site; a 
 	@echo "The documentation: build/site/index.html"
 
 test: lint ## set up, lint, and run all tests except the exhaustive ones
-	@$(BIN)/python -m pytest -n $$(( 3 * $$(nproc) + 2 )) --dist loadscope --no-loadscope-reorder
+	@$(BIN)/python -m pytest -n $$(( 2 * $$(nproc) + 1 )) --dist loadscope --no-loadscope-reorder
 
 test-cases: lint ## all cases, in simulated time if possible; run this before you push a change to a check or a cause
 	@$(BIN)/python -m pytest -n $$(( 2 * $$(nproc) + 1 )) --dist loadscope -m "" -k "is_named or full_marks or gets_the_report" \
