@@ -31,7 +31,7 @@ from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.submission.search import PACKAGE_FILES
-from grader.submission.tree import MAX_ENTRIES, shown, sort_key
+from grader.submission.tree import LEFT_OUT, MAX_ENTRIES, shown, sort_key
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -182,7 +182,8 @@ def _is_one_alone(folder: Path) -> bool:
     """
     present = [name for name in PACKAGE_FILES if os.path.isfile(folder / name)]
     if present:
-        inside = [each for each in _entries(folder) if os.path.isdir(each) and _is_handed_in(each)]
+        folders = [each for each in _entries(folder) if os.path.isdir(each) and each.name not in LEFT_OUT]
+        inside = [each for each in folders if _is_handed_in(each)]
         return len(inside) < len(present)
     if not os.path.isdir(folder / OWN):
         return False

@@ -161,6 +161,7 @@ def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> Non
 def test_a_package_or_an_archive_alone_is_one_submission(tmp_path: Path) -> None:
     copy_solution(STEP, tmp_path / "anna")
     copy_solution(STEP, tmp_path / "anna/my_robot_controller/my_robot_controller")  # a copy of the package inside it
+    copy_solution(STEP, tmp_path / "anna/build/my_robot_controller")
     zipped(tmp_path / "anna", tmp_path / "ben.zip", "my_robot_controller")
     found = find_submissions([tmp_path / "anna", tmp_path / "ben.zip"], STEP, tmp_path / "grades")
     assert [each.student for each in found] == ["anna", "ben"]
