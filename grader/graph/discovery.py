@@ -231,10 +231,10 @@ def wait_until_acknowledged(publishers: Iterable[Any], timeout_s: float, usual_s
     """Wait until all reliable subscriptions have received the last messages of the publishers, up to a timeout.
 
     A subscription that has not discovered the publisher yet, for example because its process is waiting for a
-    processor, loses the messages if the publisher leaves the graph. Without the profile loopback.xml, acknowledgements
+    processor, loses the messages if the publisher leaves the graph. With a profile of the user, acknowledgements may
     take up to 3 s, and the timeout is `usual_s`.
     """
-    prompt = os.environ.get(_PROFILE) == str(LOOPBACK_PROFILE)
+    prompt = os.environ.get(_PROFILE) in (str(LOOPBACK_PROFILE), str(FASTDDS_PROFILE))
     end = time.monotonic() + (timeout_s if prompt else usual_s)
     for publisher in publishers:
         left = min(usual_s, _WAKE_S)

@@ -54,8 +54,8 @@ DELIVERY_S = 0.5
 PAUSES = 0x7A3C5EC10C4B0A5E
 """A number that shows that the memory is still that of the launcher, and not that of a program which replaced it."""
 FOREVER = 2**62
-_PR_SET_PDEATHSIG = 1
-"""The first argument of prctl(2), with its value from linux/prctl.h."""
+_PR_SET_PDEATHSIG, _PR_SET_TIMERSLACK, _PR_GET_TIMERSLACK = 1, 29, 30
+"""First arguments of prctl(2), with their values from linux/prctl.h."""
 _TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
@@ -123,26 +123,28 @@ def _initialize_with(ours: list[str]) -> None:
 def deliver_before_destroying() -> None:
     """Keep each publisher until its messages have been acknowledged, or until DELIVERY_S has passed.
 
-    After a crash, a publisher does not wait.
-
     A subscription drops a message that arrives after the notice that the publisher is gone. Without the wait, it would
     depend on the load of the machine whether the last message of a node arrives before this notice. During the wait,
-    the node is busy instead of sleeping, so that simulated time does not advance.
+    the node is busy instead of sleeping, so that simulated time does not advance. After a crash, there is no wait.
     """
     from rclpy.duration import Duration
     from rclpy.publisher import Publisher
 
-    original, monotonic = Publisher.destroy, time.monotonic
+    original, monotonic, prctl = Publisher.destroy, time.monotonic, ctypes.CDLL(None).prctl
 
     @functools.wraps(original)
     def destroy(self: Publisher) -> None:
         # After a crash, a wait could be interrupted by Ctrl-C, which would replace the traceback.
         crashed = sys.exc_info()[0] not in (None, SystemExit)
         until = monotonic() + (0.0 if crashed else DELIVERY_S)
+        # By default, Linux lets even a wait without duration sleep for 50 microseconds.
+        slack_ns = prctl(_PR_GET_TIMERSLACK, 0, 0, 0, 0)
+        prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
         with suppress(Exception):
             while not self.wait_for_all_acked(Duration()) and (now := monotonic()) < until:
                 while monotonic() < now + DELIVERY_S / 500:
                     pass
+        prctl(_PR_SET_TIMERSLACK, slack_ns, 0, 0, 0)
         original(self)
 
     Publisher.destroy = destroy

@@ -175,3 +175,20 @@ class GroupThreads:
     def waits(self) -> list[Wait]:
         """Return the reason why each thread is waiting, except for the threads of Fast DDS."""
         return [wait for threads in self._each for wait in threads.waits()]
+
+
+def cpu_ns_at_rest(*each: Threads | GroupThreads) -> list[tuple[int, ...]] | None:
+    """Return the CPU times (ns) if all threads are asleep and none has run meanwhile. Otherwise, return None.
+
+    A thread that has woken another one and falls asleep is in state S a moment before its CPU time grows. If it is held
+    up in this moment, for example because the host of a virtual machine takes the processor away, it appears to have
+    slept all the time. The other thread may have been looked at before it was woken. The second look shows that it is
+    awake. When a BPF program held up every fourth such moment for up to 0.4 ms, a single look let the clock advance too
+    early about 8 times in 37,500 frames, and two looks never did in 65,000.
+
+    Raises:
+        GoneError: a process has exited.
+    """
+    before = [threads.cpu_ns() for threads in each]
+    asleep = all(threads.asleep() for threads in each * 2)
+    return before if asleep and [threads.cpu_ns() for threads in each] == before else None

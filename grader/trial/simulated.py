@@ -18,7 +18,7 @@ from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
 from grader.common.linux_calls import sleep_precisely
-from grader.trial.node_group import GroupThreads
+from grader.trial.node_group import GroupThreads, cpu_ns_at_rest
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.pauses import Pauses
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
@@ -159,16 +159,12 @@ class SimulatedTrial(Simulation):
         """
         while True:
             # The main thread usually works longest. While it works, the other threads need not be checked.
-            asleep = self._node.main_asleep()
-            if asleep:
-                node, own = self._node.cpu_ns(), self._own.cpu_ns()
-                asleep = self._node.asleep() and self._own.asleep()
-                still = self._node.cpu_ns() == node and self._own.cpu_ns() == own
-                if asleep and still and not self.node.waited_to_write(self.node.read_output(self._now_s)):
-                    self._received = self._own.only(own, receives)
-                    return True
-            if not asleep:
+            cpu_ns = cpu_ns_at_rest(self._node, self._own) if self._node.main_asleep() else None
+            if cpu_ns is None:
                 time.sleep(_POLL_S)
+            elif not self.node.waited_to_write(self.node.read_output(self._now_s)):
+                self._received = self._own.only(cpu_ns[-1], receives)
+                return True
             if patience.ended(time.monotonic()):
                 return False
 

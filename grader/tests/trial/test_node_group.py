@@ -261,7 +261,7 @@ def test_the_last_command_of_a_node_arrives_and_moves_the_turtle() -> None:
 
 def test_the_clock_stands_still_while_a_node_that_has_left_exits() -> None:
     recording = trial_of(Inputs(), 10.0, leaves=LEAVES_SLOWLY)
-    assert (recording.end.by, len(recording.commands)) == ("itself", 1)
+    assert (recording.end.by, len(recording.commands), recording.end.t_s) == ("itself", 1, 0.512)
 
 
 def test_a_child_in_a_session_of_its_own_ends_with_a_trial_without_a_sandbox() -> None:

@@ -115,7 +115,7 @@ def test_waiting_for_a_processor_after_ctrl_c_does_not_count(
 
 def test_a_quick_node_is_not_blamed_for_a_slow_node_in_the_same_trial(tmp_path: Path, clock: list[float]) -> None:
     may_exit = tmp_path / "may exit"
-    slow_one = SLOW.replace("sleep 1;", f"until [ -e '{may_exit}' ]; do sleep 0.01; done;")
+    slow_one = SLOW.replace("sleep 1;", f'until [ -e "{may_exit}" ]; do sleep 0.01; done;')
     limits = Limits(processes=50, cpu_s=60)
     with (
         NodeProcess(LauncherProcess(["sh", "-c", QUICK]), limits) as quick,
@@ -133,7 +133,7 @@ def test_a_quick_node_is_not_blamed_for_a_slow_node_in_the_same_trial(tmp_path: 
 
 def test_a_node_is_not_blamed_for_a_pause_of_the_grader(tmp_path: Path, clock: list[float]) -> None:
     may_exit = tmp_path / "may exit"
-    slow = SLOW.replace("sleep 1;", f"until [ -e '{may_exit}' ]; do sleep 0.01; done;")
+    slow = SLOW.replace("sleep 1;", f'until [ -e "{may_exit}" ]; do sleep 0.01; done;')
     with NodeProcess(LauncherProcess(["sh", "-c", slow]), Limits(processes=50, cpu_s=60)) as process:
         group = NodeGroup([process])
         _run(group)

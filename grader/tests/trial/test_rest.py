@@ -6,6 +6,7 @@ import os
 import threading
 from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -13,7 +14,11 @@ from grader.common.process_stat import has_exited, stat_fields
 from grader.tests.descriptors import descriptors
 from grader.tests.trial.program import python
 from grader.tests.waiting import until
+from grader.trial.node_group import cpu_ns_at_rest
 from grader.trial.rest import GoneError, Threads, not_of_dds, receives
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 WAITS_ON_A_LINE = "import sys; print('ready', flush=True); sys.stdin.readline(); print('woken', flush=True); "
 
@@ -97,6 +102,47 @@ def test_a_busy_process_does_not_rest() -> None:
     with python("print('ready', flush=True)\nwhile True: pass") as process, closing(Threads(process.pid)) as threads:
         assert not any(threads.look().asleep or threads.asleep() for _ in range(100))
         assert not threads.main_asleep()
+
+
+class HeldUp(Threads):
+    """A process that is woken just after it was looked at, and whose CPU time is not counted yet."""
+
+    wake: Callable[[], object]
+    looks = 0
+
+    def asleep(self) -> bool:
+        found = super().asleep()
+        self.looks += 1
+        if self.looks == 1:
+            self.wake()
+        return found
+
+    def cpu_ns(self) -> tuple[int, ...]:
+        return (0,)
+
+
+def test_a_process_that_is_woken_just_after_a_look_is_not_at_rest() -> None:
+    code = "import sys; print('ready', flush=True); sys.stdin.readline(); print('woken', flush=True)\nwhile True: pass"
+    with python(code) as process, closing(HeldUp(process.pid)) as threads:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        stdin, stdout = process.stdin, process.stdout
+
+        def wake() -> None:
+            stdin.write("\n")
+            stdin.flush()
+            assert stdout.readline() == "woken\n"
+
+        threads.wake = wake
+        until(threads.main_asleep)
+        assert cpu_ns_at_rest(threads) is None
+        assert threads.looks == 2
+
+
+def test_processes_at_rest_have_their_cpu_times() -> None:
+    with python(WAITS_ON_A_LINE) as process, closing(Threads(process.pid)) as threads:
+        until(lambda: cpu_ns_at_rest(threads, threads) is not None)
+        assert cpu_ns_at_rest(threads, threads) == [threads.cpu_ns()] * 2
 
 
 def test_a_second_thread_counts() -> None:
