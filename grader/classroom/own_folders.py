@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common import xdg
+from grader.common.whole_file import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -36,12 +37,7 @@ def mark(file: Path, *, needed: bool) -> None:
     except OSError:
         if needed:
             raise
-    partial = file.with_name(f"{file.name}.partial")
-    try:
-        partial.write_text(made, "ascii")
-        partial.replace(file)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_whole(file, made.encode("ascii"))
 
 
 def has_results(folder: Path) -> bool:

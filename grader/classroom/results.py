@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from grader.classroom.own_folders import MARK, has_results, is_among, is_same, mark
+from grader.common.whole_file import PARTIAL, write_whole
 from grader.errors import DiskError, MachineError, UsageError
 from grader.report.json import from_json, to_data
 from grader.report.suspicion import ERRORS
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 REPORTS = "reports"
-_PARTIAL = ".partial"
 _SAFE = re.compile(r"[^A-Za-z0-9 _@+,=-]")
 _LONGEST = 120
 """The maximum length of the student's part of a file name (bytes). A longer part is truncated, and gets a digest."""
@@ -103,17 +103,10 @@ class Results:
     def write(self, name: str, content: bytes) -> Path:
         """Write a file in the folder, completely or not at all. Raises MachineError if the file cannot be written."""
         file = self.folder / name
-        partial = file.with_name(file.name + _PARTIAL)
         try:
             file.parent.mkdir(exist_ok=True)
-            with partial.open("wb") as opened:
-                opened.write(content)
-                opened.flush()
-                os.fsync(opened.fileno())
-            partial.replace(file)
+            write_whole(file, content)
         except OSError as error:
-            with suppress(OSError):
-                partial.unlink()
             message = (
                 f"{file} could not be written: {error.strerror}. The results so far are kept. If the disk is "
                 "full, free some space. Then run the same command again to continue."
@@ -155,7 +148,8 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
         message = f"{folder} is not a folder. "
         message += "Choose a new folder with --out." if chosen else "Move it to another folder."
         raise UsageError(message)
-    if folder.exists() and not lock.exists() and any(folder.iterdir()):
+    killed = {f".{MARK}{PARTIAL}"}  # a run that was killed before it had marked the folder left this file
+    if folder.exists() and not lock.exists() and {each.name for each in folder.iterdir()} - killed:
         message = f"{folder} contains files that are not results of `grader grade`. "
         message += "Choose a new folder with --out." if chosen else "Move them to another folder."
         raise UsageError(message)
@@ -183,7 +177,7 @@ def opened(folder: Path, submissions: Sequence[Path] = (), *, chosen: bool = Tru
             instead = ", or choose another folder with --out" if chosen else ""
             message = f"Another `grader grade` or `grader gradebook sync` is using {folder}. Let it finish{instead}."
             raise UsageError(message) from error
-        for leftover in folder.rglob(f"*{_PARTIAL}"):
+        for leftover in folder.rglob(f"*{PARTIAL}"):
             leftover.unlink(missing_ok=True)
         yield Results(folder)
 

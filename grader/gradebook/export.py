@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import stat
 import sys
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.plugins import CsvExportPlugin
 
 from grader.classroom.results import Results
+from grader.common.whole_file import write_whole
 from grader.common.words import a_list, count, printable
 from grader.gradebook.class_folders import CLASS, RESULTS
 from grader.gradebook.confirmed import withhold_unconfirmed
@@ -79,17 +79,7 @@ def _write(file: Path, content: bytes) -> None:
         file.write_bytes(content)
         return
     file = file.resolve()
-    partial = file.with_name(f".{file.name}.partial")
-    try:
-        with partial.open("wb") as opened:
-            opened.write(content)
-            opened.flush()
-            os.fsync(opened.fileno())
-        if file.exists():
-            partial.chmod(stat.S_IMODE(file.stat().st_mode))
-        partial.replace(file)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_whole(file, content, mode=stat.S_IMODE(file.stat().st_mode) if file.exists() else None)
 
 
 def _rows(gradebook: Any, steps: Collection[str], students: Collection[str]) -> Iterator[list[str]]:  # noqa: ANN401

@@ -18,6 +18,7 @@ from grader.checks.outcome import Status
 from grader.common import xdg
 from grader.common.roots_files import belongs_to_root
 from grader.common.system_errors import of_the_machine, refusal
+from grader.common.whole_file import write_whole
 from grader.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
@@ -134,9 +135,7 @@ def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
             data = _read(file)
             changed = change(load(workspace))
             data["workspaces"][str(workspace)] = asdict(changed)
-            fresh = file.with_suffix(".new")
-            fresh.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-            fresh.replace(file)
+            write_whole(file, (json.dumps(data, indent=1) + "\n").encode())
     except OSError as error:
         more = (refusal(error) if of_the_machine(error) else belongs_to_root(Path(error.filename or file))) or (
             "Choose a folder that you can write to: export XDG_STATE_HOME=FOLDER"

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common.roots_files import belongs_to_root
+from grader.common.whole_file import write_whole
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import draw_numbers, to_toml
@@ -133,19 +134,9 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
         if os.path.lexists(target):
             present.append(path)
             continue
-        _create(target, instead.get(path, found.files[path]), 0o755 if path in found.executable else 0o644)
+        write_whole(target, instead.get(path, found.files[path]), mode=0o755 if path in found.executable else 0o644)
         added.append(path)
     return tuple(added), tuple(present)
-
-
-def _create(target: Path, content: bytes, mode: int) -> None:
-    partial = target.with_name(f".{target.name}.new")
-    try:
-        partial.write_bytes(content)
-        partial.chmod(mode)
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 def _is_of_earlier_step(exercise: Exercise, source: Path, path: str) -> bool:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import NoReturn
 
@@ -94,7 +96,7 @@ def test_after_a_full_disk_the_same_command_works(tmp_path: Path, monkeypatch: p
 
     grades = tmp_path / "grades"
     with monkeypatch.context() as patch:
-        patch.setattr(Path, "write_text", full)
+        patch.setattr(os, "fsync", full)
         with pytest.raises(MachineError, match="Free some space"), opened(grades, [tmp_path]):
             pass
     for _ in range(2):
@@ -156,6 +158,21 @@ def test_a_folder_with_other_files_is_not_touched(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="contains files that are not results"), opened(tmp_path):
         pass
     assert [file.name for file in tmp_path.iterdir()] == ["index.html"]
+
+
+def test_a_run_that_was_killed_before_it_had_marked_the_folder_is_repeated(tmp_path: Path) -> None:
+    code = (
+        "import os, signal, sys\nfrom pathlib import Path\nfrom grader.classroom.own_folders import mark\n"
+        "os.fsync = lambda _: os.kill(os.getpid(), signal.SIGKILL)\nmark(Path(sys.argv[1]), needed=False)"
+    )
+    folder = tmp_path / "grades"
+    folder.mkdir()
+    env = {**os.environ, "XDG_STATE_HOME": str(tmp_path / "state")}
+    done = subprocess.run([sys.executable, "-c", code, folder / MARK], check=False, env=env)
+    assert (done.returncode, [each.name for each in folder.iterdir()]) == (-9, [f".{MARK}.partial"])
+    with opened(folder) as results:
+        assert not list(folder.rglob("*.partial"))
+        assert results.save("anna", report("passed"), KEY, b"<p>page")
 
 
 def test_a_file_in_the_place_of_the_folder_is_reported_as_a_file(tmp_path: Path) -> None:
