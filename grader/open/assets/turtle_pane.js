@@ -103,7 +103,9 @@ export class TurtlePane {
     const place = find("asked");
     place.hidden = false;
     place.textContent = "Asking …";
-    const { problem, command, output, stopped } = await act("ask", { text });
+    const answer = this.awaited = act("ask", { text });
+    const { problem, command, output, stopped } = await answer;
+    if (this.awaited !== answer) return; // another question was asked in the meantime
     place.textContent = problem ?? `$ ${command}\n${output}${stopped ? "\n(The command was stopped, because it did not end.)" : ""}`;
     place.scrollIntoView({ block: "nearest" });
   }

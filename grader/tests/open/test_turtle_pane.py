@@ -157,6 +157,14 @@ def drive(learner: Course, browser: Browser) -> None:
     page.get_by_label("ros2").fill("topic hz /turtle1/cmd_vel")
     page.keyboard.press("Enter")
     page.locator("#asked").get_by_text("Too few messages to measure a rate arrived within 5 s.").wait_for()
+    with page.expect_response(lambda response: " hz " in (response.request.post_data or "")) as late:
+        page.keyboard.press("Enter")
+        page.get_by_label("ros2").fill("topics list")
+        page.keyboard.press("Enter")
+        page.locator("#asked").get_by_text("Did you mean `ros2 topic list`?").wait_for()
+    late.value.finished()
+    page.evaluate("new Promise(requestAnimationFrame)")
+    assert "Did you mean" in (page.locator("#asked").text_content() or "")
     with connect(f"ws://{learner.host}/turtle?token={learner.token}", origin=Origin(f"http://{learner.host}")) as link:
         assert '"kind":"all"' in str(link.recv())
     page.get_by_role("button", name="Stop turtlesim").click()
