@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import urllib.request
+from functools import partial
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,6 +14,7 @@ from grader.tests.browser import violations
 from grader.tests.narrow import cut
 from grader.tests.ros2.world import SOLUTION, World, world
 from grader.tests.view.tab import opened, url
+from grader.tests.waiting import until
 from grader.view.rqt.plot_fields import expand, topic_of
 
 if TYPE_CHECKING:
@@ -23,6 +25,12 @@ if TYPE_CHECKING:
 DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
 pytestmark = of_the_wheels
 """A sourced ROS 2 has its own rqt with windows."""
+KEEPS_SOCKETS = """
+window.sockets = [];
+window.WebSocket = class extends WebSocket {
+  constructor(...given) { super(...given); sockets.push(this); }
+};
+"""
 
 
 @pytest.fixture(scope="module")
@@ -137,6 +145,23 @@ def test_rqt_console_shows_what_nodes_log_and_filters_it(driven: World, browser:
         assert tab.title() == "rqt_console, live"
 
 
+def test_cleared_messages_do_not_come_back_when_the_page_connects_again(driven: World, browser: Browser) -> None:
+    for tab in page_of(driven, browser, "rqt_console"):
+        tab.add_init_script(KEEPS_SOCKETS)
+        tab.reload()
+        log = tab.get_by_role("group", name="The log messages as a table")
+        driven.run("ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, y: 2.0, name: ben}'")
+        log.get_by_text("Spawning turtle [ben]").wait_for()
+        tab.get_by_role("button", name="Clear").click()
+        tab.evaluate("sockets.at(-1).close()")
+        until(partial(tab.evaluate, "sockets.length === 2 && sockets[1].readyState === WebSocket.OPEN"))
+        driven.run("ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, y: 2.0, name: cleo}'")
+        log.get_by_text("Spawning turtle [cleo]").wait_for()
+        assert log.get_by_text("Spawning turtle [ben]").count() == 0
+    for name in ("ben", "cleo"):
+        driven.run(f"ros2 service call /kill turtlesim/srv/Kill '{{name: {name}}}'")
+
+
 def test_a_service_is_called_from_the_page(driven: World, whole: Page) -> None:
     whole.get_by_label("Service", exact=True).select_option("/spawn")
     assert whole.get_by_label("Request").input_value() == "x: 0.0\ny: 0.0\ntheta: 0.0\nname: ''"
@@ -149,7 +174,11 @@ def test_a_service_is_called_from_the_page(driven: World, whole: Page) -> None:
     whole.get_by_role("button", name="Call").click()
     whole.get_by_text("The call to /spawn failed.").wait_for()
     assert "The field 'x' has the type float." in whole.get_by_role("group", name="Response").inner_text()
+    whole.get_by_label("Service", exact=True).select_option("/leo/set_pen")
     driven.run("ros2 service call /kill turtlesim/srv/Kill '{name: leo}'")
+    whole.locator('option[value="/leo/teleport_absolute"]').wait_for(state="detached")
+    whole.get_by_role("button", name="Call").click()
+    whole.get_by_text("/leo/set_pen is not in the graph.").wait_for()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
