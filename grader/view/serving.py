@@ -32,6 +32,9 @@ _SETTINGS: dict[str, Any] = {
     # Do not compress, since the page is on the same machine.
     "ws_per_message_deflate": False,
     "ws_max_size": 65536,
+    # Do not drop a page that does not respond for 20 s, for example because the machine is busy. If its browser ends,
+    # the system closes the connection.
+    "ws_ping_interval": None,
     "lifespan": "off",
     # Do not trust an address that the client sends in a header.
     "proxy_headers": False,

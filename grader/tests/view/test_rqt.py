@@ -162,6 +162,17 @@ def test_cleared_messages_do_not_come_back_when_the_page_connects_again(driven: 
         driven.run(f"ros2 service call /kill turtlesim/srv/Kill '{{name: {name}}}'")
 
 
+def test_a_field_that_is_added_without_a_connection_is_plotted_later(driven: World, browser: Browser) -> None:
+    for tab in page_of(driven, browser, "rqt_plot /turtle1/pose/x"):
+        tab.add_init_script(KEEPS_SOCKETS)
+        tab.reload()
+        tab.get_by_role("row", name="/turtle1/pose/x").wait_for()
+        tab.get_by_label("Field", exact=True).fill("/turtle1/pose/y")
+        tab.evaluate("sockets[0].close(); document.querySelector('#add').requestSubmit()")
+        tab.get_by_role("row", name="/turtle1/pose/y").wait_for()
+        assert tab.evaluate("sockets.length") == 2
+
+
 def test_a_service_is_called_from_the_page(driven: World, whole: Page) -> None:
     whole.get_by_label("Service", exact=True).select_option("/spawn")
     assert whole.get_by_label("Request").input_value() == "x: 0.0\ny: 0.0\ntheta: 0.0\nname: ''"

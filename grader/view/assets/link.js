@@ -20,6 +20,7 @@ export class Link {
     this.probe = probe;
     this.closed = false;
     this.socket = null;
+    this.unsent = [];
     document.addEventListener("visibilitychange", () => this.wake());
     window.addEventListener("pageshow", () => this.wake());
     window.addEventListener("focus", () => this.wake());
@@ -38,6 +39,7 @@ export class Link {
       this.awake = true;
       this.up();
       this.wake();
+      for (const said of this.unsent.splice(0)) this.send(said);
     });
     socket.addEventListener("message", (event) => {
       const news = JSON.parse(event.data);
@@ -66,8 +68,15 @@ export class Link {
     this.send({ awake });
   }
 
+  // Without a connection, a message is lost, such as a key that has long been released when the page connects again.
   send(said) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(said));
+  }
+
+  // Send a request as soon as there is a connection.
+  request(said) {
+    if (this.socket.readyState === WebSocket.OPEN) this.send(said);
+    else this.unsent.push(said);
   }
 }
 

@@ -12,12 +12,12 @@ const [status, notice, hold] = ["status", "notice", "hold"].map(find);
 
 const graph = new Graph(find("graph"));
 const topics = new Topics(find("topics"));
-const plot = new Plot({ place: find("plot"), table: find("series"), remove: (name) => link.send({ unplot: name }),
+const plot = new Plot({ place: find("plot"), table: find("series"), remove: (name) => link.request({ unplot: name }),
   empty: "No field is plotted. Type a field above, such as /turtle1/pose/x, and press Add." });
 const log = new Console({ table: find("log").querySelector("table"), place: find("log"), count: find("count"),
   levels: find("levels"), node: find("node"), text: find("text"), pause: find("still"), clear: find("forget") });
 const services = new Services({ form: find("call"), service: find("service"), type: find("type"), request: find("request"),
-  response: find("response"), status: find("answered"), call: (call) => link.send({ call }) });
+  response: find("response"), status: find("answered"), call: (call) => link.request({ call }) });
 
 function say(text, kind, problem = "") {
   if (status.textContent !== text) status.textContent = text;
@@ -59,7 +59,7 @@ const link = new Link({ news: hear, up: () => say("Live", "runs"), down: lost })
 
 find("add").addEventListener("submit", (event) => {
   event.preventDefault();
-  link.send({ plot: find("field").value.trim() });
+  link.request({ plot: find("field").value.trim() });
   find("field").value = "";
 });
 find("window").addEventListener("change", (event) => { plot.window_s = Number(event.target.value); plot.draw(); });
